@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Constants of a launch: the camera, the picture, the samples, the counts of the scene.
+#ifndef SUN_SHARED_FRAME_H
+#define SUN_SHARED_FRAME_H
+#include "shared/emitter.h"
+#include "shared/types.h"
+
+SUN_NAMESPACE_BEGIN
+
+#define SUN_CAMERA_PERSPECTIVE 0
+#define SUN_CAMERA_ORTHOGRAPHIC 1
+
+// Film position (x, y) in pixels, y down -> s = (2x/width - 1, 1 - 2y/height).
+// Perspective: direction = forward + s.x * right + s.y * up (right and up scaled by the half angles' tangents); the ray starts at the lens.
+// Orthographic: origin = position + s.x * right + s.y * up (scaled by the half sizes), direction = forward.
+typedef struct Camera {
+  float position[3];
+  uint kind;
+  float right[3];
+  float lens_radius;     // metres; 0 is a pinhole
+  float up[3];
+  float focus_distance;  // along forward
+  float forward[3];      // unit length
+  float pad;
+} Camera;
+SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
+
+#define SUN_SAMPLER_SOBOL 0
+#define SUN_SAMPLER_INDEPENDENT 1
+
+#define SUN_FILTER_TABLE 1024  // cells of the filter's inverse cdf
+
+typedef struct Frame {
+  Camera camera;
+  Environment environment;
+  uint width, height;            // of the whole picture
+  uint tile_x0, tile_y0;         // the tile that this film covers
+  uint tile_width, tile_height;
+  uint sample_first;             // samples of this launch: [first, first + count)
+  uint sample_count;
+  uint path_count;               // tile_width * tile_height * sample_count, rounded up to whole blocks of 4x4 pixels
+  uint seed;
+  uint sampler;
+  uint max_depth;
+  uint roulette_depth;           // scatterings after which roulette begins
+  uint emitter_count;
+  uint instance_count;
+  uint layer_bounce;             // film layers (shared/film.h): bounce.0, or SUN_NONE where bounces are not kept; bounce_layers of them
+  uint bounce_layers;
+  uint layer_albedo, layer_normal, layer_depth, layer_position, layer_object, layer_material;  // or SUN_NONE
+  uint pool;                     // slots
+  uint flags;
+  float filter_radius;           // pixels; 0: box of one pixel
+  float filter_weight;           // integral |f| / integral f: 1 where f is nowhere negative
+  float scene_radius;            // half the diagonal of the scene's bounds; reaches beyond every surface from its centre
+  float scene_center[3];
+  uint pad[3];
+} Frame;
+SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
+
+SUN_NAMESPACE_END
+#endif

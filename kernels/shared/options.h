@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every switch of the kernels, its values and its default. The host sets them with -D; none of them changes a bit of a result.
+#ifndef SUN_SHARED_OPTIONS_H
+#define SUN_SHARED_OPTIONS_H
+
+// Paths that one work-item of a shading stage carries in vector variables: 1, 8 or 16.
+#ifndef LANES
+#define LANES 1
+#endif
+
+// Layout of the BVH: which traverse_*.h answers.
+#define SUN_LAYOUT_BINARY 0
+#define SUN_LAYOUT_WIDE8 1
+#define SUN_LAYOUT_WIDE16 2
+#ifndef SUN_LAYOUT
+#define SUN_LAYOUT SUN_LAYOUT_BINARY
+#endif
+
+// 1 where the device has cl_khr_int64_base_atomics; otherwise the film adds two 32-bit words with carry.
+#ifndef SUN_ATOMICS_64
+#define SUN_ATOMICS_64 0
+#endif
+
+// Explicit-vector kernels tell vectorizers to keep their hands off (Intel's runtime scalarizes them otherwise).
+#if !defined(__cplusplus) && LANES > 1
+#define SUN_KERNEL __kernel __attribute__((vec_type_hint(float16)))
+#else
+#define SUN_KERNEL __kernel
+#endif
+
+#endif
