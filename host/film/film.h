@@ -31,6 +31,7 @@ struct Film {
   std::map<std::string, std::string> information; // what does not: version, device, seconds, scene file
   std::uint64_t clamped = 0, nan = 0;             // contributions
   bool interrupted = false;
+  std::string name;                               // where it came from, for messages; empty: made here
 
   int width() const { return x1 - x0; }
   int height() const { return y1 - y0; }
@@ -39,11 +40,21 @@ struct Film {
   const FilmLayer *find(const std::string &name) const;
 };
 
-// One channel's value of a layer, averaged over the film's samples (0 where there are none).
+// bin 0 * 2^-36 + bin 1 * 2^-12.
+double film_number(std::int64_t fine, std::int64_t coarse);
+
+// The samples that a layer is summed over: all of the film's, but sample 0 alone where it holds identifiers, which have no average.
+std::uint64_t layer_samples(const Film &film, const FilmLayer &layer);
+
+// One channel's value of a layer, averaged over layer_samples (0 where there are none).
 double film_value(const Film &film, const FilmLayer &layer, std::size_t pixel, int channel);
 
 // beauty.even + beauty.odd as floats, RGB, rows from the top of the crop window.
 std::vector<float> film_beauty(const Film &film);
+
+// The variance of the beauty's mean, estimated from its two halves: one degree of freedom a channel, for display and --error, too weak for tests.
+// Infinity where a half has no sample.
+double film_variance(const Film &film, std::size_t pixel, int channel);
 
 // Adds `other` to `film`. Throws Error saying what differs: scene hash, a setting, the window, the layers, or samples that both hold.
 void add_film(Film &film, const Film &other);

@@ -48,5 +48,9 @@ SUN_STATIC_ASSERT(sizeof(Wide8Node) == 224, wide8_node_is_224_bytes);
 SUN_STATIC_ASSERT(sizeof(Wide16Node) == 448, wide16_node_is_448_bytes);
 SUN_STATIC_ASSERT(sizeof(WidePack) == 320, wide_pack_is_320_bytes);
 
+// Entries of the traversal's private stacks. The build gives no tree that needs more (host/flatten/bvh.cpp).
+#define SUN_BINARY_STACK 64
+#define SUN_WIDE_STACK 512
+
 SUN_NAMESPACE_END
 #endif

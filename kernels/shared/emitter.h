@@ -44,7 +44,7 @@ typedef struct Environment {
   uint kind;
   uint width, height;    // of the map, and of the distribution
   uint emitter;          // its place in the alias table, or SUN_NONE
-  float constant[3];     // radiance, SUN_ENVIRONMENT_CONSTANT
+  float radiance[3];     // SUN_ENVIRONMENT_CONSTANT (`constant` is a keyword of OpenCL C)
   float rotation;        // turns about +y by this many radians / 2pi: added to u
 } Environment;
 SUN_STATIC_ASSERT(sizeof(Environment) == 32, environment_is_32_bytes);

@@ -28,6 +28,11 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 #define SUN_SAMPLER_SOBOL 0
 #define SUN_SAMPLER_INDEPENDENT 1
 
+// Flags of a frame.
+#define SUN_FRAME_TRANSPARENT 1u   // camera rays that leave the scene add nothing
+#define SUN_FRAME_DIRECT 2u        // shade sends shadow rays to emitters, and emitters that are hit are weighted against them
+#define SUN_FRAME_EXTRAS 4u        // VertexExtra[] is as long as Vertex[]
+
 #define SUN_FILTER_TABLE 1024  // cells of the filter's inverse cdf
 
 typedef struct Frame {
@@ -36,9 +41,8 @@ typedef struct Frame {
   uint width, height;            // of the whole picture
   uint tile_x0, tile_y0;         // the tile that this film covers
   uint tile_width, tile_height;
-  uint sample_first;             // samples of this launch: [first, first + count)
-  uint sample_count;
-  uint path_count;               // tile_width * tile_height * sample_count, rounded up to whole blocks of 4x4 pixels
+  uint sample_first;             // of this launch
+  uint paths_per_sample;         // pixels of the tile, rounded up to whole blocks of 4x4
   uint seed;
   uint sampler;
   uint max_depth;
@@ -54,6 +58,12 @@ typedef struct Frame {
   float filter_weight;           // integral |f| / integral f: 1 where f is nowhere negative
   float scene_radius;            // half the diagonal of the scene's bounds; reaches beyond every surface from its centre
   float scene_center[3];
+  uint layer_alpha;
+  // Where each table begins in the buffer of records, in words (path: pipeline/upload.cpp).
+  uint at_triangle_emitter, at_materials, at_texture_refs, at_textures;
+  uint at_emitters, at_lights, at_tables, at_environment_texels;
+  uint at_environment_cdf;
+  float filter_negative_from;    // |offset| beyond which the filter's factor is negative; beyond the radius for all but Mitchell
   uint pad[3];
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);

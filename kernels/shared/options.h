@@ -16,6 +16,29 @@
 #define SUN_LAYOUT SUN_LAYOUT_BINARY
 #endif
 
+// 1: a path's fields stand in columns (GPUs), 0: in records of one cache line (CPUs).
+#ifndef SUN_COLUMNS
+#define SUN_COLUMNS 0
+#endif
+
+// Queue entries that one work-item of compact owns: long on CPUs, short on GPUs.
+#ifndef SUN_CHUNK
+#define SUN_CHUNK 1024
+#endif
+
+// 1 where the scene has triangles that shadow rays may pass: alpha, smooth thin transmission.
+#ifndef SUN_PASSABLE
+#define SUN_PASSABLE 1
+#endif
+
+// 1 where the scene has anything but diffuse surfaces; 1 where it has textures. 0 leaves the code out: compiled sooner, the same bits.
+#ifndef SUN_SPECULAR
+#define SUN_SPECULAR 1
+#endif
+#ifndef SUN_TEXTURES
+#define SUN_TEXTURES 1
+#endif
+
 // 1 where the device has cl_khr_int64_base_atomics; otherwise the film adds two 32-bit words with carry.
 #ifndef SUN_ATOMICS_64
 #define SUN_ATOMICS_64 0

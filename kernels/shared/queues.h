@@ -10,23 +10,30 @@ SUN_NAMESPACE_BEGIN
 #define SUN_STATUS_DEPTH 0x0000ffffu
 #define SUN_STATUS_ALIVE 0x00010000u
 #define SUN_STATUS_SHADOW 0x00020000u      // a shadow ray waits in this slot
-#define SUN_STATUS_ENDED_SHIFT 20          // why the path ended, below
+#define SUN_STATUS_FIRST_HIT 0x00040000u   // the layers of the first hit have been written
+#define SUN_STATUS_ENDED 0x00080000u       // the path has just ended and is not counted yet
+#define SUN_STATUS_ENDED_SHIFT 20          // why it ended, below
 #define SUN_ENDED_LIGHT 0
 #define SUN_ENDED_DEPTH 1
 #define SUN_ENDED_ESCAPED 2
 #define SUN_ENDED_ABSORBED 3
 #define SUN_ENDED_COUNT 4
 
-// Lengths, in one buffer of uints.
-#define SUN_COUNT_LIVE 0       // entries of the ray queue that are alive; the dead slots stand behind them
-#define SUN_COUNT_SHADOW 1     // entries of the shadow queue
-#define SUN_COUNT_NEXT_PATH 2  // paths of this launch begun so far
-#define SUN_COUNT_ENDED 3      // 4 words
-#define SUN_COUNT_CLAMPED 7    // contributions beyond the film's range
-#define SUN_COUNT_NAN 8        // contributions that were NaN or infinite, dropped
-#define SUN_COUNT_RAYS 9       // 3 words: camera, bounce, shadow rays traced
-#define SUN_COUNT_BY_DEPTH 12  // 64 words: paths alive after this many scatterings (the last: and more)
-#define SUN_COUNT_WORDS 80
+// Lengths and counters, in one buffer of uints.
+#define SUN_COUNT_LIVE 0         // entries of the ray queue that stages work on: alive ones, then those that generate fills
+#define SUN_COUNT_SHADOW 1       // entries of the shadow queue
+#define SUN_COUNT_REFILL_FIRST 2 // queue position of the first slot to fill ...
+#define SUN_COUNT_REFILL 3       // ... how many ...
+#define SUN_COUNT_REFILL_PATH 4  // ... and the number of the first path there
+#define SUN_COUNT_NEXT_PATH 5    // paths of this launch begun so far
+#define SUN_COUNT_PATHS 80       // paths of this launch: the host lowers it to end early, after a whole sample
+#define SUN_COUNT_CLAMPED 6      // contributions beyond the film's range
+#define SUN_COUNT_NAN 7          // contributions that were NaN or infinite, dropped
+#define SUN_COUNT_ENDED 8        // 4 words: paths ended, by reason
+#define SUN_COUNT_RAYS 12        // 3 words: camera rays that went on straight, bounce rays, shadow rays
+#define SUN_COUNT_BY_DEPTH 16    // 64 words: paths ended after so many scatterings (the last: or more)
+#define SUN_COUNT_DEPTHS 64
+#define SUN_COUNT_WORDS 96
 
 // One hit, as intersect leaves it for shade.
 typedef struct Hit {

@@ -5,8 +5,8 @@
 
 #define SUN_TABLE_SRGB 0  // 256: sRGB byte -> linear
 
-// Directional albedos of the GGX lobe with Smith's height-correlated masking, for energy compensation. cos at cell i: i / (N - 1); roughness
-// alpha at cell j: j / (N - 1). Index: j * N + i.
+// Directional albedos of the GGX lobe with Smith's height-correlated masking, for energy compensation. cos at cell i: (i / (N - 1))^2; roughness
+// alpha at cell j: (j / (N - 1))^2. Index: j * N + i. See bsdf/energy.h.
 #define SUN_ENERGY_N 32
 #define SUN_TABLE_SPLIT_A 256                                            // scale of F0: integral of (1 - (1-VdotH)^5) f cos
 #define SUN_TABLE_SPLIT_B (SUN_TABLE_SPLIT_A + SUN_ENERGY_N * SUN_ENERGY_N)  // scale of F90: integral of (1-VdotH)^5 f cos

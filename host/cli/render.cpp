@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// sunstone render: a scene becomes pictures.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/session.h"
+#include "cli/stats.h"
+#include "device/selftest.h"
+#include "film/film_file.h"
+
+namespace sunstone {
+
+namespace {
+
+constexpr double checkpoint_seconds = 30;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+bool is_film(const std::string &name) { return name.ends_with(".film"); }
+
+class Render {
+ public:
+  Render(RenderOptions &options, Notices &notices) : o_(options), notices_(notices), progress_(options.quiet) {}
+  void run();
+
+ private:
+  void check_outputs();
+  void resume();
+  void render_range(SampleRange range);
+  void write_outputs();
+  void write_checkpoint();
+  Film whole_film() const;
+  bool go_on(const RenderProgress &p);
+
+  RenderOptions &o_;
+  Notices &notices_;
+  Progress progress_;
+  RenderSettings settings_;
+  Session session_;
+  std::optional<Film> earlier_;  // --resume
+  std::string reproducible_ = "unknown";
+  double startup_ = 0, begun_ = 0, render_seconds_ = 0, last_update_ = 0, last_checkpoint_ = 0;
+  double error_ = -1;            // estimated relMSE at the last look
+  std::uint64_t samples_wanted_ = 0;
+  SampleRange range_{};          // of the call that is running
+  SampleRange all_{};
+  bool paused_ = false;          // the call ended to write, not to end the render
+};
+
+void Render::check_outputs() {
+  if (o_.outputs.empty() && o_.checkpoint.empty()) o_.outputs.push_back(std::filesystem::path(o_.scene).stem().string() + ".png");
+  for (const std::string &name : o_.outputs) {
+    if (!is_film(name)) check_picture_name(name);
+    check_writable(name);
+  }
+  if (!o_.checkpoint.empty()) {
+    if (!is_film(o_.checkpoint)) throw UsageError("--checkpoint " + printable(o_.checkpoint), "takes a .film");
+    check_writable(o_.checkpoint);
+  }
+  if (!o_.stats.empty()) check_writable(o_.stats);
+}
+
+void Render::resume() {
+  Film film = read_film(o_.resume);
+  const std::string difference = film_difference(film, session_.renderer->film());
+  if (!difference.empty()) throw Error(printable(o_.resume), "cannot be resumed: " + difference, "the same scene and the same flags as before are needed");
+  // Goes on where the first gap is.
+  std::uint64_t next = all_.first;
+  for (const SampleRange &done : film.samples)
+    if (done.first <= next && done.last > next) next = done.last;
+  for (const SampleRange &done : film.samples)
+    if (done.first > next && done.first < all_.last) all_.last = done.first;
+  progress_.line(fmt::format("resuming {}: samples {}", printable(o_.resume), show_samples(film.samples)));
+  all_.first = std::min(next, all_.last);
+  earlier_ = std::move(film);
+}
+
+Film Render::whole_film() const {
+  Film film = session_.renderer->film();
+  film.interrupted = interrupted();
+  film.information["version"] = SUNSTONE_VERSION;
+  film.information["device"] = session_.device.info().description();
+  film.information["scene"] = o_.scene;
+  film.information["seconds"] = fmt::format("{:.3f}", render_seconds_);
+  film.information["reproducible"] = reproducible_;
+  if (earlier_) {
+    if (film.samples.empty()) {
+      // Nothing new was rendered: the earlier film as it is.
+      Film same = *earlier_;
+      same.information = film.information;
+      return same;
+    }
+    add_film(film, *earlier_);
+  }
+  return film;
+}
+
+void Render::write_outputs() {
+  const Film film = whole_film();
+  for (const std::string &name : o_.outputs) {
+    if (is_film(name)) write_film(name, film);
+    else load_content().write_picture(name, film, o_.view);
+  }
+}
+
+void Render::write_checkpoint() {
+  if (!o_.checkpoint.empty()) write_film(o_.checkpoint, whole_film());
+  last_checkpoint_ = now();
+}
+
+bool Render::go_on(const RenderProgress &p) {
+  const double passed = now() - begun_;
+  const double of_call = p.paths_wanted ? static_cast<double>(p.paths_begun) / static_cast<double>(p.paths_wanted) : 1;
+  const double samples = static_cast<double>(range_.first - all_.first) + of_call * static_cast<double>(range_.last - range_.first);
+  double fraction = samples / static_cast<double>(samples_wanted_);
+  if (o_.seconds) fraction = std::max(fraction, std::min(1.0, passed / *o_.seconds));
+  const double pixels = static_cast<double>(session_.renderer->film().pixels());
+  const double left = fraction > 0 ? passed / fraction - passed : 0;
+  std::string text = fmt::format("{:.0f}/{} samples, {}samples/s, {} left", samples, samples_wanted_, show_count(samples * pixels / std::max(passed, 1e-9)), show_seconds(left));
+  if (o_.seconds && !o_.spp) text = fmt::format("{:.0f} samples, {}samples/s, {} left", samples, show_count(samples * pixels / std::max(passed, 1e-9)), show_seconds(left));
+  if (error_ >= 0 && std::isfinite(error_)) text += fmt::format(", noise {:.2e}", error_);
+  if (fraction < 1) progress_.bar(fraction, text);
+  if (interrupted()) return false;
+  if (o_.seconds && passed >= *o_.seconds) return false;
+  const bool pause = (o_.update && now() - last_update_ >= *o_.update) || (!o_.checkpoint.empty() && now() - last_checkpoint_ >= checkpoint_seconds);
+  paused_ = paused_ || pause;
+  return !pause;
+}
+
+void Render::render_range(SampleRange range) {
+  while (range.first < range.last) {
+    paused_ = false;
+    range_ = range;
+    range.first = session_.renderer->render(range, [&](const RenderProgress &p) { return go_on(p); }).last;
+    if (range.first < range.last && !paused_) return;
+    const double at = now();
+    if (o_.update && at - last_update_ >= *o_.update) {
+      write_outputs();
+      last_update_ = now();
+    }
+    if (!o_.checkpoint.empty() && at - last_checkpoint_ >= checkpoint_seconds) write_checkpoint();
+    error_ = estimated_error(session_.renderer->film());
+    if (interrupted() || (o_.seconds && now() - begun_ >= *o_.seconds)) return;
+  }
+}
+
+void Render::run() {
+  settings_ = render_settings(o_);
+  all_ = parse_samples(o_);
+  check_outputs();
+  catch_interrupts();
+  session_ = open_session(o_, settings_, notices_);
+  progress_.line(session_.device.info().description());
+  progress_.line(session_.loaded.line);
+  const SelfTestResult self_test = cached_self_test(session_.device);
+  reproducible_ = self_test.reproducible ? "yes" : "no";
+  if (!self_test.reproducible)
+    notices_.warning(session_.device.info().name, "rounds differently in " + self_test.differs + ": its picture may differ from other devices' in the last bits");
+  if (!o_.resume.empty()) resume();
+  samples_wanted_ = std::max<std::uint64_t>(1, all_.last - all_.first);
+  startup_ = Progress::seconds();
+  begun_ = last_update_ = last_checkpoint_ = now();
+
+  if (o_.error) {
+    // Looked at after powers of two.
+    std::uint64_t next = 2;
+    SampleRange part = all_;
+    while (part.first < all_.last) {
+      part.last = std::min(all_.last, all_.first + next);
+      render_range(part);
+      const Film film = whole_film();
+      error_ = estimated_error(film);
+      if (interrupted() || (o_.seconds && now() - begun_ >= *o_.seconds) || error_ <= *o_.error) break;
+      part.first = part.last;
+      next *= 2;
+    }
+  } else {
+    render_range(all_);
+  }
+  render_seconds_ = now() - begun_;
+  progress_.bar(1, fmt::format("{}", show_seconds(render_seconds_)));
+  progress_.end_bar();
+
+  const Film film = whole_film();
+  if (film.samples.empty()) throw Error("", "interrupted before the first sample was done; nothing is written");
+  write_outputs();
+  write_checkpoint();
+  if (!o_.stats.empty()) {
+    const std::string text = render_stats(session_, {startup_, render_seconds_, reproducible_});
+    write_file(o_.stats, std::as_bytes(std::span(text)));
+  }
+  if (film.clamped) notices_.note("", fmt::format("{} contributions were beyond the film's range and clamped", film.clamped));
+  if (film.nan) notices_.warning("", fmt::format("{} contributions were not finite and dropped", film.nan));
+  progress_.line(fmt::format("{}{} samples per pixel in {}, {}samples/s, film hash {}", interrupted() ? "interrupted: " : "", film.sample_count(), show_seconds(render_seconds_),
+                             show_count(static_cast<double>(session_.renderer->counts().paths) / std::max(render_seconds_, 1e-9)), film_hash(film).hex()));
+  if (error_ = estimated_error(film); std::isfinite(error_)) progress_.line(fmt::format("noise (relMSE, estimated from two halves): {:.3e}", error_));
+  for (const std::string &name : o_.outputs) progress_.line(printable(name, 400));
+  if (!o_.checkpoint.empty()) progress_.line(printable(o_.checkpoint, 400));
+}
+
+}  // namespace
+
+void add_render(CLI::App &app, CommandContext &context) {
+  auto options = std::make_shared<RenderOptions>();
+  CLI::App *command = app.add_subcommand("render", "Render a scene");
+  add_render_options(*command, *options);
+  std::string integrators_text = "Integrators:\n";
+  for (const Plan &plan : integrators()) integrators_text += fmt::format("  {:<10} {} ({})\n", plan.name, plan.summary, plan.source);
+  command->footer(integrators_text +
+                  "\nExamples:\n"
+                  "  sunstone render scenes/cornell/cornell.gltf --size 512x512 -o cornell.png\n"
+                  "  sunstone render model.glb --env sky.hdr --spp 256 -o model.exr -o model.png --aov all\n"
+                  "  sunstone render big.glb --time 3600 --checkpoint big.film -o big.exr\n"
+                  "  sunstone render model.glb --samples 0:512 -o first-half.film");
+  command->callback([options, &context] {
+    options->view.transparent_background = options->background == "transparent";
+    Render(*options, context.notices).run();
+  });
+}
+
+}  // namespace sunstone

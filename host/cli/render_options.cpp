@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/render_options.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "cli/commands.h"
+#include "pipeline/plan.h"
+
+namespace sunstone {
+
+namespace {
+
+template <class T> T parse(const std::string &flag, std::string_view text, const char *what) {
+  T value{};
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || rest != text.data() + text.size()) throw UsageError(flag + " " + printable(text), std::string("is not ") + what);
+  return value;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t at = text.find(separator);
+    parts.push_back(text.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    text.remove_prefix(at + 1);
+  }
+}
+
+LayerChoice parse_layers(const std::string &text) {
+  LayerChoice choice;
+  if (text.empty()) return choice;
+  for (const std::string_view name : split(text, ',')) {
+    const bool all = name == "all";
+    bool known = all || name == "beauty" || name == "samples" || name == "variance";  // always there
+    const auto take = [&](std::string_view wanted, bool &flag) {
+      if (all || name == wanted) flag = known = true;
+    };
+    take("bounce", choice.bounces);
+    take("direct", choice.bounces);
+    take("indirect", choice.bounces);
+    take("albedo", choice.albedo);
+    take("normal", choice.normal);
+    take("Z", choice.depth);
+    take("depth", choice.depth);
+    take("position", choice.position);
+    take("object_id", choice.object);
+    take("material_id", choice.material);
+    take("alpha", choice.alpha);
+    if (!known)
+      throw UsageError("--aov " + printable(name), "no such layer; there are beauty, albedo, normal, Z, position, samples, variance, bounce, direct, indirect, object_id, material_id, alpha, all");
+  }
+  return choice;
+}
+
+}  // namespace
+
+void add_render_options(CLI::App &command, RenderOptions &o) {
+  command.add_option("scene", o.scene, "The scene: .gltf, .glb or .obj")->required()->type_name("SCENE");
+  command.add_option("-o,--output", o.outputs, "Write FILE: .exr with layers; .png .jpg .hdr .tif a view; .film the integers [the scene's stem .png]")->type_name("FILE")->allow_extra_args(false);
+  command.add_option("--integrator", o.integrator, "How light is found [path]")->type_name("NAME")->group("Picture");
+  command.add_option("--spp", o.spp, "Samples per pixel [64]")->type_name("N")->group("Picture");
+  command.add_option("--time", o.seconds, "End after so many seconds, whole samples done")->type_name("SECONDS")->group("Picture");
+  command.add_option("--error", o.error, "End once the estimated relMSE is below this (looked at after powers of two)")->type_name("RELMSE")->group("Picture");
+  command.add_option("--size", o.size, "Width and height in pixels [1280x720]")->type_name("WxH")->group("Picture");
+  command.add_option("--crop", o.crop, "Render this window of the picture alone, half-open")->type_name("X0,Y0,X1,Y1")->group("Picture");
+  command.add_option("--max-depth", o.max_depth, "Most scatterings of a path; 0 is light seen directly [16]")->check(CLI::Range(0, 4096))->type_name("N")->group("Picture");
+  command.add_option("--seed", o.seed, "Another seed gives independent noise [0]")->check(CLI::Range(0ull, 0xffffffffull))->type_name("N")->group("Picture");
+  command.add_option("--sampler", o.sampler, "sobol (Owen-scrambled), or independent [sobol]")->check(CLI::IsMember({"sobol", "independent"}))->type_name("NAME")->group("Picture");
+  command.add_option("--filter", o.filter, "box, tent, gaussian, mitchell or blackman-harris [blackman-harris]")->type_name("NAME")->group("Picture");
+  command.add_option("--camera", o.camera, "The file's camera of this name or number [0]")->type_name("NAME|INDEX")->group("Camera");
+  command.add_option("--look-from", o.look_from, "A camera here ...")->type_name("X,Y,Z")->group("Camera");
+  command.add_option("--look-at", o.look_at, "... looking there")->type_name("X,Y,Z")->group("Camera");
+  command.add_option("--up", o.up, "What is up for --look-from [y]")->check(CLI::IsMember({"y", "z"}))->type_name("y|z")->group("Camera");
+  command.add_option("--fov", o.fov, "Vertical angle of view in degrees [40 with --look-from]")->check(CLI::Range(0.001, 179.0))->type_name("DEG")->group("Camera");
+  command.add_option("--aperture", o.aperture, "Radius of the lens in metres [0: all sharp]")->check(CLI::Range(0.0, 1e6))->type_name("RADIUS")->group("Camera");
+  command.add_option("--focus", o.focus, "Distance of the sharp plane [to the scene's centre]")->check(CLI::Range(1e-6, 1e9))->type_name("METRES")->group("Camera");
+  command.add_option("--env", o.environment, "Light from all around: a picture (.hdr, .exr) or a colour")->type_name("FILE|R,G,B")->group("Light");
+  command.add_option("--env-rotation", o.environment_rotation, "Turn it about the vertical [0]")->type_name("DEG")->group("Light");
+  command.add_option("--env-strength", o.environment_strength, "Multiply it [1]")->check(CLI::Range(0.0, 1e12))->type_name("X")->group("Light");
+  command.add_option("--background", o.background, "scene, or transparent where camera rays meet nothing [scene]")->check(CLI::IsMember({"scene", "transparent"}))->type_name("KIND")->group("Light");
+  add_view_options(command, o.view);
+  command.add_option("--aov", o.layers, "More layers for .exr and .film: a list, or all")->type_name("LIST")->group("Output");
+  command.add_option("--update", o.update, "Rewrite the pictures this often while rendering")->check(CLI::Range(0.1, 1e9))->type_name("SECONDS")->group("Output");
+  command.add_option("--samples", o.samples, "Render these samples alone, half-open; merge adds the films")->type_name("A:B")->group("Output");
+  command.add_option("--checkpoint", o.checkpoint, "Keep the film here every 30 seconds and at the end")->type_name("FILE.film")->group("Output");
+  command.add_option("--resume", o.resume, "Go on with this film")->type_name("FILE.film")->group("Output");
+  command.add_option("--stats", o.stats, "Write what was measured as JSON")->type_name("FILE.json")->group("Output");
+  command.add_option("--device", o.device, "Number, part of the name, cpu or gpu [the first GPU, else the CPU with most units]")->type_name("SELECTOR")->group("Device (never changes a bit)");
+  command.add_option("--threads", o.threads, "Use so many units of a CPU")->type_name("N")->group("Device (never changes a bit)");
+  command.add_option("--pool", o.pool, "Paths in flight")->check(CLI::Range(16u, 1u << 26))->type_name("N")->group("Device (never changes a bit)");
+  command.add_option("--work-group", o.work_group, "Work-items of a group")->check(CLI::Range(1, 4096))->type_name("N")->group("Device (never changes a bit)");
+  command.add_option("--layout", o.layout, "Tree: binary, wide8 or wide16")->type_name("NAME")->group("Device (never changes a bit)");
+  command.add_option("--lanes", o.lanes, "Paths of a shading work-item: 1, 8 or 16")->check(CLI::IsMember({1, 8, 16}))->type_name("N")->group("Device (never changes a bit)");
+  command.add_flag("--allow-outside", o.allow_outside, "Let the scene name files outside its own folder");
+  command.add_flag("-q,--quiet", o.quiet, "Only warnings and errors");
+  command.add_flag("-v,--verbose", o.verbose, "More about what is done");
+}
+
+std::vector<float> parse_numbers(const std::string &flag, const std::string &text, std::size_t count) {
+  std::vector<float> values;
+  for (const std::string_view part : split(text, ',')) {
+    values.push_back(parse<float>(flag, part, "a number"));
+    if (!std::isfinite(values.back())) throw UsageError(flag + " " + printable(text), "is not finite");
+  }
+  if (values.size() != count) throw UsageError(flag + " " + printable(text), "takes " + std::to_string(count) + " numbers with commas between them");
+  return values;
+}
+
+SampleRange parse_samples(const RenderOptions &o) {
+  if (o.samples.empty()) {
+    const unsigned long long open_end = o.seconds || o.error ? 1ull << 20 : 64;
+    const unsigned long long spp = o.spp.value_or(open_end);
+    if (spp == 0 || spp > (1ull << 32)) throw UsageError("--spp " + std::to_string(spp), "is not from 1 to 2^32");
+    return {0, spp};
+  }
+  if (o.spp) throw UsageError("--samples", "cannot be given beside --spp");
+  const auto parts = split(o.samples, ':');
+  if (parts.size() != 2) throw UsageError("--samples " + printable(o.samples), "is not A:B");
+  const SampleRange range{parse<std::uint64_t>("--samples", parts[0], "a sample number"), parse<std::uint64_t>("--samples", parts[1], "a sample number")};
+  if (range.first >= range.last || range.last > (std::uint64_t(1) << 32)) throw UsageError("--samples " + printable(o.samples), "holds no sample, or ends beyond 2^32");
+  return range;
+}
+
+RenderSettings render_settings(const RenderOptions &o) {
+  RenderSettings s;
+  const auto size = split(o.size, 'x');
+  if (size.size() != 2) throw UsageError("--size " + printable(o.size), "is not WxH, such as 1280x720");
+  s.width = parse<int>("--size", size[0], "a width in pixels");
+  s.height = parse<int>("--size", size[1], "a height in pixels");
+  if (s.width < 1 || s.height < 1 || s.width > 65536 || s.height > 65536 || static_cast<std::int64_t>(s.width) * s.height > (std::int64_t(1) << 28))
+    throw UsageError("--size " + printable(o.size), "each side is from 1 to 65536, and there are at most 2^28 pixels");
+  s.x1 = s.width;
+  s.y1 = s.height;
+  if (!o.crop.empty()) {
+    const auto parts = split(o.crop, ',');
+    if (parts.size() != 4) throw UsageError("--crop " + printable(o.crop), "is not X0,Y0,X1,Y1");
+    int *const corner[4] = {&s.x0, &s.y0, &s.x1, &s.y1};
+    for (std::size_t i = 0; i < 4; i++) *corner[i] = parse<int>("--crop", parts[i], "a whole number");
+    if (s.x0 < 0 || s.y0 < 0 || s.x1 > s.width || s.y1 > s.height || s.x0 >= s.x1 || s.y0 >= s.y1)
+      throw UsageError("--crop " + printable(o.crop), "is not a window of the " + o.size + " picture");
+  }
+  s.integrator = o.integrator;
+  integrator(s.integrator);
+  s.max_depth = o.max_depth;
+  s.seed = static_cast<std::uint32_t>(o.seed);
+  s.independent = o.sampler == "independent";
+  s.filter = filter_from_name(o.filter);
+  s.transparent_background = o.background == "transparent";
+  s.layers = parse_layers(o.layers);
+  return s;
+}
+
+}  // namespace sunstone

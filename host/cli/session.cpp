@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <future>
+
+#include "base/error.h"
+#include "math/elementary.h"
+
+namespace sunstone {
+
+namespace {
+
+Camera choose_camera(const Content &content, const RenderOptions &o, const Scene &scene, float aspect) {
+  if (o.look_from.empty() != o.look_at.empty()) throw UsageError(o.look_from.empty() ? "--look-at" : "--look-from", "--look-from and --look-at go together");
+  const float to_radians = SUN_PI / 180.0f;
+  Camera camera;
+  if (!o.look_from.empty()) {
+    if (!o.camera.empty()) throw UsageError("--camera", "cannot be given beside --look-from");
+    const std::vector<float> from = parse_numbers("--look-from", o.look_from, 3), at = parse_numbers("--look-at", o.look_at, 3);
+    const glm::vec3 up = o.up == "z" ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
+    camera = content.look_camera({from[0], from[1], from[2]}, {at[0], at[1], at[2]}, up, static_cast<float>(o.fov.value_or(40.0)) * to_radians);
+  } else if (!o.camera.empty()) {
+    const Camera *found = nullptr;
+    std::string known;
+    std::size_t number = 0;
+    const auto [rest, error] = std::from_chars(o.camera.data(), o.camera.data() + o.camera.size(), number);
+    for (std::size_t i = 0; i < scene.cameras.size(); i++) {
+      known += fmt::format("{}{} \"{}\"", i ? ", " : "", i, printable(scene.cameras[i].name));
+      if (scene.cameras[i].name == o.camera || (error == std::errc() && rest == o.camera.data() + o.camera.size() && number == i)) found = found ? found : &scene.cameras[i];
+    }
+    if (!found) throw UsageError("--camera " + printable(o.camera), scene.cameras.empty() ? "the file has no camera" : "no such camera; there are " + known);
+    camera = *found;
+  } else {
+    camera = scene.cameras.empty() ? content.default_camera(scene, aspect) : scene.cameras[0];
+  }
+  if (o.fov) camera.yfov = static_cast<float>(*o.fov) * to_radians;
+  if (o.aperture) camera.lens_radius = static_cast<float>(*o.aperture);
+  if (o.focus) {
+    camera.focus_distance = static_cast<float>(*o.focus);
+  } else if (camera.lens_radius > 0) {
+    // On the centre of the scene, along the axis.
+    const Bounds bounds = content.scene_bounds(scene);
+    const glm::vec3 forward = -camera.transform[2], to = bounds.empty() ? forward : (bounds.lower + bounds.upper) * 0.5f - camera.transform[3];
+    const float along = to.x * forward.x + to.y * forward.y + to.z * forward.z;
+    camera.focus_distance = along > 1e-4f ? along : 1.0f;
+  }
+  return camera;
+}
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+}  // namespace
+
+LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, Layout layout, std::size_t max_page_bytes, Notices &notices) {
+  LoadedScene loaded;
+  const Content &content = load_content();
+  const double begun = now();
+  loaded.scene = content.import_scene(o.scene, {o.allow_outside}, notices);
+  const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+  if (!o.environment.empty()) loaded.scene.environment = content.import_environment(o.environment, notices);
+  loaded.scene.environment.rotation = static_cast<float>(o.environment_rotation / 360.0);
+  loaded.scene.environment.strength = static_cast<float>(o.environment_strength);
+  content.add_defaults(loaded.scene, aspect, o.scene, notices);
+  const Plan &plan = integrator(settings.integrator);
+  for (const Light &light : loaded.scene.lights) {
+    const char *kind = light.kind == Light::Kind::point ? "point" : light.kind == Light::Kind::spot ? "spot" : "directional";
+    if (std::ranges::find(plan.refuses, kind) != plan.refuses.end())
+      throw Error(o.scene, fmt::format("has a {} light, which no path of --integrator {} can meet: its radiance comes from areas and environments alone", kind, plan.name),
+                  "--integrator path renders it");
+  }
+  const Camera camera = choose_camera(content, o, loaded.scene, aspect);
+  loaded.import_seconds = now() - begun;
+  FlattenOptions flatten;
+  flatten.layout = layout;
+  flatten.max_page_bytes = max_page_bytes;
+  loaded.flat = content.flatten(loaded.scene, flatten, notices);
+  loaded.camera = content.flatten_camera(camera, settings.width, settings.height);
+  loaded.build_seconds = now() - begun - loaded.import_seconds;
+  const FlatScene &flat = loaded.flat;
+  loaded.line = fmt::format("{}: {} triangles, {} instance{}, {} material{}, {} texture{}, {} emitter{}", printable(o.scene), flat.triangles.size(), flat.instances.size(),
+                            flat.instances.size() == 1 ? "" : "s", flat.materials.size(), flat.materials.size() == 1 ? "" : "s", flat.textures.size(),
+                            flat.textures.size() == 1 ? "" : "s", flat.emitters.size(), flat.emitters.size() == 1 ? "" : "s");
+  return loaded;
+}
+
+Variant scene_variant(Variant variant, const FlatScene &scene) {
+  variant.passable = scene.has_passable;
+  variant.specular = scene.has_specular;
+  variant.textures = scene.has_textures;
+  return variant;
+}
+
+Session open_session(const RenderOptions &o, const RenderSettings &settings, Notices &notices) {
+  Session session;
+  // The platforms come up first: the content object brings another TBB.
+  const DeviceInfo info = choose_device(list_devices(notices), o.device);
+  session.variant = device_variant(info);
+  if (o.lanes) session.variant.lanes = o.lanes;
+  if (!o.layout.empty()) session.variant.layout = layout_from_name(o.layout);
+  std::future<LoadedScene> loading =
+      std::async(std::launch::async, [&] { return load_scene(o, settings, session.variant.layout, info.max_allocation, notices); });
+  session.device = Device(info, {o.threads, true, o.work_group});
+  session.loaded = loading.get();
+  session.variant = scene_variant(session.variant, session.loaded.flat);
+  double begun = now();
+  session.programs = std::make_unique<Programs>(session.device, session.variant);
+  session.compile_seconds = now() - begun;
+  begun = now();
+  session.renderer = std::make_unique<Renderer>(session.device, *session.programs, session.loaded.flat, session.loaded.camera, settings, Tuning{o.pool, session.variant.lanes});
+  session.device.finish();
+  session.upload_seconds = now() - begun;
+  return session;
+}
+
+}  // namespace sunstone

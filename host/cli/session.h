@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scene on a device, ready to render: what `render`, `verify` and `bench` begin with.
+#pragma once
+#include <memory>
+
+#include "base/notice.h"
+#include "cli/render_options.h"
+#include "content/content.h"
+#include "pipeline/renderer.h"
+
+namespace sunstone {
+
+struct LoadedScene {
+  Scene scene;
+  FlatScene flat;
+  kernel::Camera camera;
+  double import_seconds = 0, build_seconds = 0;
+  std::string line;  // what it is, in one line
+};
+
+// Imports and flattens by the flags of `render`: camera, environment, defaults. `textures_at_most`: of one buffer on the device.
+LoadedScene load_scene(const RenderOptions &options, const RenderSettings &settings, Layout layout, std::size_t max_page_bytes, Notices &notices);
+
+// What the programs have to know of a scene.
+Variant scene_variant(Variant variant, const FlatScene &scene);
+
+struct Session {
+  Device device;
+  Variant variant;
+  LoadedScene loaded;
+  std::unique_ptr<Programs> programs;
+  std::unique_ptr<Renderer> renderer;
+  double compile_seconds = 0, upload_seconds = 0;
+};
+
+// Opens the device and loads the scene at once, in two threads.
+Session open_session(const RenderOptions &options, const RenderSettings &settings, Notices &notices);
+
+}  // namespace sunstone

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library's side of the table.
+#include "content/content.h"
+
+extern "C" __attribute__((visibility("default"))) const sunstone::Content *sunstone_content(std::size_t table_size) {
+  static const sunstone::Content content = {
+      .write_picture = sunstone::write_picture,
+      .compare_images = sunstone::compare_images,
+      .read_picture = sunstone::read_picture,
+      .import_scene = sunstone::import_scene,
+      .import_environment = sunstone::import_environment,
+      .scene_bounds = sunstone::scene_bounds,
+      .default_camera = sunstone::default_camera,
+      .look_camera = sunstone::look_camera,
+      .add_defaults = sunstone::add_defaults,
+      .estimate_memory = sunstone::estimate_memory,
+      .flatten = sunstone::flatten,
+      .build_tree = sunstone::build_tree,
+      .flatten_camera = sunstone::flatten_camera,
+  };
+  return table_size == sizeof content ? &content : nullptr;
+}

@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flatten/geometry.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "flatten/materials.h"
+#include "flatten/weld.h"
+#include "math/vector.h"
+
+namespace sunstone {
+namespace {
+
+using kernel::uint;
+
+constexpr std::size_t small_mesh = 4096;                        // triangles of all copies of a mesh together
+constexpr std::size_t exact_boxes = std::size_t(1) << 26;       // vertices that are transformed, at most, for the boxes of one mesh's instances
+constexpr float farthest = 1e18f;                               // of a coordinate: squares stay finite
+
+// A transform, and what follows of it.
+struct Placement {
+  float m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row major
+  double normal[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};      // inverse transpose, but for a positive factor
+  double determinant = 1;
+  bool mirrored() const { return determinant < 0; }
+};
+
+Placement placement_of(const glm::mat4x3 &transform) {
+  Placement p;
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 4; column++) p.m[4 * row + column] = transform[column][row];
+  const auto at = [&](int row, int column) { return static_cast<double>(p.m[4 * (row % 3) + column % 3]); };
+  double cofactor[9];
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++) cofactor[3 * r + c] = at(r + 1, c + 1) * at(r + 2, c + 2) - at(r + 1, c + 2) * at(r + 2, c + 1);
+  p.determinant = at(0, 0) * cofactor[0] + at(0, 1) * cofactor[1] + at(0, 2) * cofactor[2];
+  for (int i = 0; i < 9; i++) p.normal[i] = p.determinant < 0 ? -cofactor[i] : cofactor[i];
+  return p;
+}
+
+// ((x + y) + z) + offset, in float.
+glm::vec3 apply(const float *m, float x, float y, float z) {
+  const auto row = [&](const float *r) { return ((r[0] * x + r[1] * y) + r[2] * z) + r[3]; };
+  return {row(m), row(m + 4), row(m + 8)};
+}
+
+glm::dvec3 apply_linear(const double *m, const glm::vec3 &v) {
+  const auto row = [&](const double *r) { return (r[0] * v.x + r[1] * v.y) + r[2] * v.z; };
+  return {row(m), row(m + 3), row(m + 6)};
+}
+
+// A primitive as it goes into the arrays once: in world space for one baked instance, or in its mesh's space.
+struct Part {
+  const Primitive *primitive = nullptr;
+  const WeldedPrimitive *welded = nullptr;
+  Placement placement;
+  uint material = 0;
+  std::size_t range = 0;  // mesh range
+  std::size_t first_vertex = 0, first_triangle = 0, triangles = 0;
+};
+
+// Does any vertex need more than position, normal and one pair of texture coordinates?
+bool extras_wanted(const Scene &scene, const FlatScene &flat, const std::vector<MeshUse> &uses) {
+  const bool second_set = std::any_of(flat.texture_refs.begin(), flat.texture_refs.end(), [](const auto &ref) { return ref.uv_set == 1; });
+  for (std::size_t m = 0; m < scene.meshes.size(); m++)
+    for (const Primitive &primitive : scene.meshes[m].primitives) {
+      if (!uses[m].instances) continue;
+      const bool normal_map = flat.materials[material_number(scene, primitive.material)].slot[SUN_SLOT_NORMAL] != SUN_NONE;
+      if (normal_map || !primitive.colors.empty() || (second_set && !primitive.uv[1].empty())) return true;
+    }
+  return false;
+}
+
+void write_vertices(const Part &part, FlatScene &flat, bool extras) {
+  const Primitive &primitive = *part.primitive;
+  const WeldedPrimitive &welded = *part.welded;
+  const Placement &p = part.placement;
+  for (std::size_t i = 0; i < welded.source.size(); i++) {
+    const std::uint32_t source = welded.source[i];
+    const glm::vec3 &local = primitive.positions[source];
+    const glm::vec3 position = apply(p.m, local.x, local.y, local.z);
+    const glm::vec3 normal = unit_vector(apply_linear(p.normal, welded.normals[i]));
+    kernel::Vertex vertex{};
+    for (int c = 0; c < 3; c++) {
+      vertex.position[c] = position[c];
+      vertex.normal[c] = normal[c];
+    }
+    if (!primitive.uv[0].empty()) {
+      vertex.u = primitive.uv[0][source].x;
+      vertex.v = primitive.uv[0][source].y;
+    }
+    flat.vertices[part.first_vertex + i] = vertex;
+    if (!extras) continue;
+    kernel::VertexExtra extra{};
+    if (!welded.tangents.empty() && welded.tangents[i].w != 0) {
+      const glm::vec4 &tangent = welded.tangents[i];
+      double linear[9];
+      for (int k = 0; k < 9; k++) linear[k] = p.m[4 * (k / 3) + k % 3];
+      const glm::vec3 world = unit_vector(apply_linear(linear, glm::vec3(tangent)));
+      for (int c = 0; c < 3; c++) extra.tangent[c] = world[c];
+      extra.tangent[3] = p.mirrored() ? -tangent.w : tangent.w;  // a mirror turns the cross product over
+    }
+    for (int c = 0; c < 4; c++) extra.color[c] = primitive.colors.empty() ? 1.0f : primitive.colors[source][c];
+    if (!primitive.uv[1].empty()) {
+      extra.uv1[0] = primitive.uv[1][source].x;
+      extra.uv1[1] = primitive.uv[1][source].y;
+    }
+    flat.vertex_extras[part.first_vertex + i] = extra;
+  }
+}
+
+// A baked triangle may lose its area, or leave the range of numbers, on its way to world space.
+bool kept(const FlatScene &flat, const Part &part, std::size_t triangle) {
+  glm::vec3 corner[3];
+  for (std::size_t k = 0; k < 3; k++) {
+    const float *position = flat.vertices[part.first_vertex + part.welded->indices[3 * triangle + k]].position;
+    corner[k] = {position[0], position[1], position[2]};
+    for (int c = 0; c < 3; c++)
+      if (!(std::fabs(corner[k][c]) <= farthest)) return false;
+  }
+  return triangle_cross(corner[0], corner[1], corner[2]) != glm::dvec3(0);
+}
+
+void write_triangles(const Part &part, FlatScene &flat) {
+  const uint flags = flat.materials[part.material].flags;
+  const bool transmits = flat.materials[part.material].transmission > 0 || (flags & SUN_MATERIAL_VOLUME);
+  uint bits = 0;
+  if (!(flags & SUN_MATERIAL_DOUBLE_SIDED) && !transmits) bits |= SUN_ID_SINGLE_SIDED;
+  if (flags & SUN_MATERIAL_PASSABLE) bits |= SUN_ID_PASSABLE;
+  std::size_t to = part.first_triangle;
+  const auto &indices = part.welded->indices;
+  for (std::size_t t = 0; 3 * t < indices.size(); t++) {
+    if (!kept(flat, part, t)) continue;
+    kernel::Triangle triangle{};
+    for (std::size_t k = 0; k < 3; k++) {
+      // The winding of a mirrored triangle is turned, so that its front stays its front.
+      const std::size_t from = part.placement.mirrored() && k > 0 ? 3 - k : k;
+      triangle.vertex[k] = static_cast<uint>(part.first_vertex + indices[3 * t + from]);
+    }
+    triangle.material = part.material;
+    flat.triangles[to] = triangle;
+    flat.triangle_ids[to] = static_cast<uint>(to) | bits;
+    to++;
+  }
+}
+
+// The box of a range's vertices that triangles use.
+Bounds range_bounds(const FlatScene &flat, const MeshRange &range) {
+  Bounds box;
+  for (std::size_t t = range.first_triangle; t < std::size_t(range.first_triangle) + range.triangle_count; t++)
+    for (uint v : flat.triangles[t].vertex)
+      for (int c = 0; c < 3; c++) {
+        box.lower[c] = std::min(box.lower[c], flat.vertices[v].position[c]);
+        box.upper[c] = std::max(box.upper[c], flat.vertices[v].position[c]);
+      }
+  return box;
+}
+
+// A box that contains every transformed vertex, and hits found in mesh space: these are off by rounding errors of the order of the terms that were added.
+Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &local, const float *m, bool exact) {
+  Bounds box;
+  const auto include = [&](const glm::vec3 &point) {
+    for (int c = 0; c < 3; c++) {
+      box.lower[c] = std::min(box.lower[c], point[c]);
+      box.upper[c] = std::max(box.upper[c], point[c]);
+    }
+  };
+  if (exact) {
+    for (std::size_t t = range.first_triangle; t < std::size_t(range.first_triangle) + range.triangle_count; t++)
+      for (uint v : flat.triangles[t].vertex) {
+        const float *p = flat.vertices[v].position;
+        include(apply(m, p[0], p[1], p[2]));
+      }
+  } else {
+    // Rounding is monotone, so the corners' transforms bound every vertex's.
+    for (int corner = 0; corner < 8; corner++)
+      include(apply(m, corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y, corner & 4 ? local.upper.z : local.lower.z));
+  }
+  for (int r = 0; r < 3; r++) {
+    float terms = std::fabs(m[4 * r + 3]);
+    for (int c = 0; c < 3; c++) terms += std::fabs(m[4 * r + c]) * std::max(std::fabs(local.lower[c]), std::fabs(local.upper[c]));
+    const float pad = terms * 0x1p-19f;
+    box.lower[r] -= pad;
+    box.upper[r] += pad;
+  }
+  return box;
+}
+
+void invert(const Placement &p, float *inverse) {
+  const double scale = 1.0 / std::fabs(p.determinant);
+  double linear[9];  // the inverse is the transposed inverse transpose
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++) linear[3 * r + c] = p.normal[3 * c + r] * scale;
+  for (int r = 0; r < 3; r++) {
+    const double offset = (linear[3 * r] * p.m[3] + linear[3 * r + 1] * p.m[7]) + linear[3 * r + 2] * p.m[11];
+    for (int c = 0; c < 3; c++) inverse[4 * r + c] = static_cast<float>(linear[3 * r + c]);
+    inverse[4 * r + 3] = static_cast<float>(-offset);
+  }
+}
+
+bool in_range(const Bounds &box) {
+  for (int c = 0; c < 3; c++)
+    if (!(box.lower[c] >= -farthest && box.upper[c] <= farthest)) return false;
+  return true;
+}
+
+void number_emitters(FlatScene &flat) {
+  flat.triangle_emitter.assign(flat.triangles.size(), SUN_NONE);
+  for (const MeshRange &range : flat.meshes) {
+    uint next = 0;
+    for (std::size_t t = range.first_triangle; t < std::size_t(range.first_triangle) + range.triangle_count; t++)
+      if (flat.materials[flat.triangles[t].material].flags & SUN_MATERIAL_EMISSIVE) flat.triangle_emitter[t] = next++;
+  }
+}
+
+// The instances of the mesh ranges: the identity for what was baked, then those of the meshes kept in their own space, in the scene's order.
+void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const std::vector<std::size_t> &range_of_mesh, bool any_baked, FlatScene &flat,
+                     Notices &notices) {
+  const auto add = [&](const Placement &p, std::size_t range) {
+    kernel::Instance instance{};
+    std::copy(std::begin(p.m), std::end(p.m), instance.to_world);
+    invert(p, instance.to_object);
+    instance.flags = p.mirrored() ? SUN_INSTANCE_MIRRORED : 0;
+    instance.first_emitter = SUN_NONE;
+    flat.instances.push_back(instance);
+    flat.instance_mesh.push_back(static_cast<uint>(range));
+  };
+  if (any_baked && flat.meshes[0].triangle_count) {
+    add({}, 0);
+    flat.instances[0].flags = SUN_INSTANCE_IDENTITY;
+  }
+  for (const Instance &instance : scene.instances) {
+    const auto mesh = static_cast<std::size_t>(instance.mesh);
+    if (!uses[mesh].baked && flat.meshes[range_of_mesh[mesh]].triangle_count) add(placement_of(instance.transform), range_of_mesh[mesh]);
+  }
+
+  std::vector<Bounds> local(flat.meshes.size()), boxes(flat.instances.size());
+  tbb::parallel_for(std::size_t(0), local.size(), [&](std::size_t i) { local[i] = range_bounds(flat, flat.meshes[i]); });
+  std::vector<std::size_t> copies(flat.meshes.size());
+  for (uint mesh : flat.instance_mesh) copies[mesh]++;
+  tbb::parallel_for(std::size_t(0), boxes.size(), [&](std::size_t i) {
+    const uint mesh = flat.instance_mesh[i];
+    const MeshRange &range = flat.meshes[mesh];
+    const bool identity = flat.instances[i].flags & SUN_INSTANCE_IDENTITY;
+    const bool exact = copies[mesh] * (3 * std::size_t(range.triangle_count)) <= exact_boxes;
+    boxes[i] = identity ? local[mesh] : world_box(flat, range, local[mesh], flat.instances[i].to_world, exact);
+  });
+
+  std::size_t to = 0, far = 0;
+  for (std::size_t i = 0; i < boxes.size(); i++) {
+    const bool usable = in_range(boxes[i]) && std::all_of(std::begin(flat.instances[i].to_object), std::end(flat.instances[i].to_object),
+                                                         [](float x) { return std::isfinite(x); });
+    if (!usable) {
+      far++;
+      continue;
+    }
+    kernel::Instance instance = flat.instances[i];
+    for (int c = 0; c < 3; c++) {
+      instance.lower[c] = boxes[i].lower[c];
+      instance.upper[c] = boxes[i].upper[c];
+      flat.bounds.lower[c] = std::min(flat.bounds.lower[c], instance.lower[c]);
+      flat.bounds.upper[c] = std::max(flat.bounds.upper[c], instance.upper[c]);
+    }
+    flat.instances[to] = instance;
+    flat.instance_mesh[to++] = flat.instance_mesh[i];
+  }
+  flat.instances.resize(to);
+  flat.instance_mesh.resize(to);
+  if (far) notices.warning(scene.name, std::to_string(far) + " instances lie beyond 1e18 m or cannot be inverted in single precision; they are left out");
+}
+
+void check_size(const char *what, std::size_t count, std::size_t size, std::size_t max_bytes) {
+  if (count > max_bytes / size)
+    throw Error{"flatten", std::to_string(count) + " " + what + " do not fit into one buffer of " + std::to_string(max_bytes >> 20) + " MiB",
+                "use a device whose largest buffer is larger, or a simpler scene"};
+}
+
+}  // namespace
+
+glm::vec3 transform_point(const kernel::Instance &instance, const float *position) {
+  if (instance.flags & SUN_INSTANCE_IDENTITY) return {position[0], position[1], position[2]};
+  return apply(instance.to_world, position[0], position[1], position[2]);
+}
+
+std::vector<MeshUse> mesh_uses(const Scene &scene) {
+  std::vector<MeshUse> uses(scene.meshes.size());
+  for (const Instance &instance : scene.instances) uses[static_cast<std::size_t>(instance.mesh)].instances++;
+  for (std::size_t m = 0; m < uses.size(); m++) {
+    for (const Primitive &primitive : scene.meshes[m].primitives) uses[m].triangles += primitive.indices.size() / 3;
+    uses[m].baked = uses[m].instances == 1 || uses[m].instances * uses[m].triangles <= small_mesh;
+  }
+  return uses;
+}
+
+bool needs_tangents(const Scene &scene, const Primitive &primitive) {
+  if (primitive.material < 0) return false;
+  const Material &material = scene.materials[static_cast<std::size_t>(primitive.material)];
+  const TextureUse &use = material.normal_texture;
+  return !material.unlit && use && scene.textures[static_cast<std::size_t>(use.texture)].image >= 0;
+}
+
+void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat, Notices &notices) {
+  const std::vector<MeshUse> uses = mesh_uses(scene);
+
+  // Every primitive that is shown, once, with its attributes.
+  std::vector<std::vector<WeldedPrimitive>> welded(scene.meshes.size());
+  std::vector<std::pair<std::size_t, std::size_t>> work;
+  for (std::size_t m = 0; m < scene.meshes.size(); m++) {
+    if (!uses[m].instances) continue;
+    welded[m].resize(scene.meshes[m].primitives.size());
+    for (std::size_t k = 0; k < welded[m].size(); k++) work.emplace_back(m, k);
+  }
+  tbb::parallel_for(std::size_t(0), work.size(), [&](std::size_t i) {
+    const auto [m, k] = work[i];
+    const Primitive &primitive = scene.meshes[m].primitives[k];
+    const bool tangents = needs_tangents(scene, primitive);
+    const int uv_set = tangents && scene.materials[static_cast<std::size_t>(primitive.material)].normal_texture.uv_set == 1 ? 1 : 0;
+    welded[m][k] = weld(primitive, tangents, uv_set);
+  });
+
+  // Where each goes: what is baked first, instance by instance, then the other meshes.
+  std::vector<Part> parts;
+  std::vector<std::size_t> range_of_mesh(scene.meshes.size());
+  const auto add_parts = [&](std::size_t m, const Placement &placement, std::size_t range) {
+    for (std::size_t k = 0; k < welded[m].size(); k++) {
+      const Primitive &primitive = scene.meshes[m].primitives[k];
+      parts.push_back({&primitive, &welded[m][k], placement, material_number(scene, primitive.material), range, 0, 0, 0});
+    }
+  };
+  for (const Instance &instance : scene.instances)
+    if (const auto m = static_cast<std::size_t>(instance.mesh); uses[m].baked) add_parts(m, placement_of(instance.transform), 0);
+  const bool any_baked = !parts.empty();
+  std::size_t ranges = any_baked ? 1 : 0;
+  for (std::size_t m = 0; m < uses.size(); m++)
+    if (uses[m].instances && !uses[m].baked) {
+      range_of_mesh[m] = ranges;
+      add_parts(m, {}, ranges++);
+    }
+
+  std::size_t vertices = 0;
+  for (Part &part : parts) {
+    part.first_vertex = vertices;
+    vertices += part.welded->source.size();
+  }
+  check_size("vertices", vertices, sizeof(kernel::Vertex), max_bytes);
+  if (vertices >= SUN_NONE) throw Error{"flatten", "more than 2^32 vertices"};
+  const bool extras = extras_wanted(scene, flat, uses);
+  if (extras) check_size("vertices with tangents or colours", vertices, sizeof(kernel::VertexExtra), max_bytes);
+  flat.vertices.resize(vertices);
+  flat.vertex_extras.resize(extras ? vertices : 1);
+  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
+    write_vertices(parts[i], flat, extras);
+    for (std::size_t t = 0; 3 * t < parts[i].welded->indices.size(); t++) parts[i].triangles += kept(flat, parts[i], t);
+  });
+
+  std::size_t triangles = 0, dropped = 0;
+  flat.meshes.resize(ranges);
+  for (Part &part : parts) {
+    part.first_triangle = triangles;
+    if (!flat.meshes[part.range].triangle_count) flat.meshes[part.range].first_triangle = static_cast<uint>(triangles);
+    triangles += part.triangles;
+    dropped += part.welded->dropped + (part.welded->indices.size() / 3 - part.triangles);
+    if (triangles >= SUN_ID_PASSABLE) throw Error{"flatten", "more than 2^30 triangles", "use a simpler scene"};
+    flat.meshes[part.range].triangle_count += static_cast<uint>(part.triangles);
+  }
+  check_size("triangles", triangles, sizeof(kernel::Triangle), max_bytes);
+  flat.triangles.resize(triangles);
+  flat.triangle_ids.resize(triangles);
+  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) { write_triangles(parts[i], flat); });
+  if (dropped) notices.note(scene.name, std::to_string(dropped) + " triangles without area are left out");
+
+  number_emitters(flat);
+  write_instances(scene, uses, range_of_mesh, any_baked, flat, notices);
+  if (flat.instances.empty()) {  // nothing to show: an identity of an empty range, at the end of the triangles
+    kernel::Instance instance{};
+    for (int i = 0; i < 3; i++) instance.to_world[5 * i] = instance.to_object[5 * i] = 1;
+    instance.flags = SUN_INSTANCE_IDENTITY;
+    instance.first_emitter = SUN_NONE;
+    flat.meshes.push_back({static_cast<uint>(triangles), 0});
+    flat.instances.push_back(instance);
+    flat.instance_mesh.push_back(static_cast<uint>(flat.meshes.size() - 1));
+  }
+  if (flat.bounds.empty()) {
+    flat.bounds.lower = glm::vec3(-1);
+    flat.bounds.upper = glm::vec3(1);
+  }
+}
+
+}  // namespace sunstone

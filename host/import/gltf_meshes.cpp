@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/gltf_meshes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace sunstone::gltf {
+
+namespace {
+
+enum class Mode { triangles = 4, strip = 5, fan = 6 };
+
+bool finite(const glm::vec3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// Unit length by the exactly rounded operations alone (glm::normalize takes a reciprocal). False where there is no direction in it.
+bool normalize(glm::vec3 &v) {
+  if (!finite(v)) return false;
+  const double x = v.x, y = v.y, z = v.z, length = std::sqrt(x * x + y * y + z * z);  // no overflow: squares of floats in double
+  if (!(length > 1e-30)) return false;
+  v = {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
+  return true;
+}
+
+// Triangles out of a row of vertex numbers, wound as glTF 2.0, section 3.7.2.1 says.
+std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t> &row, Mode mode) {
+  if (row.size() < 3) return {};
+  if (mode == Mode::triangles) return {row.begin(), row.end() - static_cast<std::ptrdiff_t>(row.size() % 3)};
+  std::vector<std::uint32_t> out;
+  out.reserve((row.size() - 2) * 3);
+  for (std::size_t i = 0; i + 2 < row.size(); i++) {
+    if (mode == Mode::strip)
+      out.insert(out.end(), {row[i], row[i + 1 + i % 2], row[i + 2 - i % 2]});
+    else
+      out.insert(out.end(), {row[i + 1], row[i + 2], row[0]});
+  }
+  return out;
+}
+
+// Normals are made unit; those without a direction get that of the triangles around them.
+void repair_normals(const Value &value, Primitive &primitive) {
+  std::vector<bool> broken(primitive.normals.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < broken.size(); i++)
+    if (!normalize(primitive.normals[i])) broken[i] = true, count++;
+  if (count == 0) return;
+  value.warn("normals without a direction were replaced by those of the faces");
+  for (std::size_t i = 0; i < broken.size(); i++)
+    if (broken[i]) primitive.normals[i] = glm::vec3(0);
+  const auto &p = primitive.positions;
+  for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
+    const std::uint32_t *corner = &primitive.indices[t];
+    if (!broken[corner[0]] && !broken[corner[1]] && !broken[corner[2]]) continue;
+    const glm::dvec3 origin(p[corner[0]]), a = glm::dvec3(p[corner[1]]) - origin, b = glm::dvec3(p[corner[2]]) - origin;
+    glm::vec3 normal(glm::cross(a, b));
+    if (!normalize(normal)) continue;
+    for (int k = 0; k < 3; k++)
+      if (broken[corner[k]]) primitive.normals[corner[k]] += normal;
+  }
+  for (std::size_t i = 0; i < broken.size(); i++)
+    if (broken[i] && !normalize(primitive.normals[i])) primitive.normals[i] = {0, 0, 1};  // of no triangle that could be seen
+}
+
+void repair_tangents(const Value &value, Primitive &primitive) {
+  for (glm::vec4 &tangent : primitive.tangents) {
+    glm::vec3 direction(tangent);
+    if (!normalize(direction) || std::isnan(tangent.w)) {
+      value.warn("tangents without a direction: they are made anew from the texture coordinates");
+      primitive.tangents.clear();
+      return;
+    }
+    tangent = glm::vec4(direction, tangent.w < 0 ? -1.0f : 1.0f);
+  }
+}
+
+template <class Vector>
+void replace_not_finite(const Value &value, std::vector<Vector> &values) {
+  bool found = false;
+  for (Vector &v : values)
+    for (int c = 0; c < Vector::length(); c++)
+      if (!std::isfinite(v[c])) v[c] = 0, found = true;
+  if (found) value.warn("numbers that are not finite were replaced by 0");
+}
+
+// Adds weight * delta to as many values as there are.
+template <class Vector>
+void add_scaled(std::vector<Vector> &values, const std::vector<glm::vec3> &deltas, float weight) {
+  for (std::size_t i = 0; i < values.size(); i++)
+    for (int c = 0; c < 3; c++) values[i][c] += weight * deltas[i][c];
+}
+
+}  // namespace
+
+void Meshes::read_attributes(const Value &value, Primitive &primitive) {
+  const Value attributes = value["attributes"];
+  const bool draco = static_cast<bool>(value.extension("KHR_draco_mesh_compression"));
+  const auto open = [&](const Value &attribute, int components) {
+    const Accessor accessor = accessors_.open(attribute, components);
+    if (draco && !accessor.backed && !accessor.sparse) value.fail("its data is there by KHR_draco_mesh_compression alone, which is not supported");
+    return accessor;
+  };
+  primitive.positions = accessors_.floats<3>(open(attributes["POSITION"], 3));
+
+  // Every other attribute has to have as many elements, which is asked before they are read.
+  const auto open_beside = [&](const Value &attribute, int components) {
+    const Accessor accessor = open(attribute, components);
+    if (accessor.count != primitive.positions.size())
+      attribute.fail("has " + counted(accessor.count, "elements") + ", but there are " + counted(primitive.positions.size(), "positions"));
+    return accessor;
+  };
+  if (const Value normal = attributes["NORMAL"]) primitive.normals = accessors_.floats<3>(open_beside(normal, 3));
+  if (const Value tangent = attributes["TANGENT"]) primitive.tangents = accessors_.floats<4>(open_beside(tangent, 4));
+  const char *const sets[2] = {"TEXCOORD_0", "TEXCOORD_1"};
+  for (int set = 0; set < 2; set++) {
+    if (const Value uv = attributes[sets[set]]) {
+      primitive.uv[set] = accessors_.floats<2>(open_beside(uv, 2));
+      replace_not_finite(uv, primitive.uv[set]);
+    }
+  }
+  if (const Value color = attributes["COLOR_0"]) {
+    const Accessor accessor = open_beside(color, 0);
+    if (accessor.components == 4) {
+      primitive.colors = accessors_.floats<4>(accessor);
+    } else if (accessor.components == 3) {
+      const std::vector<glm::vec3> rgb = accessors_.floats<3>(accessor);
+      accessors_.budget().take(rgb.size(), sizeof(glm::vec4), color);
+      primitive.colors.reserve(rgb.size());
+      for (const glm::vec3 &c : rgb) primitive.colors.emplace_back(c, 1.0f);
+    } else {
+      color.fail("a colour has 3 or 4 components, not " + std::to_string(accessor.components));
+    }
+    replace_not_finite(color, primitive.colors);
+  }
+}
+
+void Meshes::apply_morph_targets(const Value &targets, const std::vector<double> &weights, Primitive &primitive) {
+  if (targets.size() == 0) return;
+  if (!weights.empty() && weights.size() != targets.size())
+    targets.fail("there are " + counted(targets.size(), "targets") + ", but " + counted(weights.size(), "weights"));
+  const auto deltas = [&](const Value &attribute) {
+    const Accessor accessor = accessors_.open(attribute, 3);
+    if (accessor.count != primitive.positions.size())
+      attribute.fail("has " + counted(accessor.count, "elements") + ", but there are " + counted(primitive.positions.size(), "positions"));
+    return accessors_.floats<3>(accessor);
+  };
+  for (std::size_t t = 0; t < weights.size(); t++) {
+    const float weight = static_cast<float>(weights[t]);
+    if (weight == 0) continue;
+    const Value target = targets[t];
+    target.expect_object();
+    if (const Value position = target["POSITION"]) add_scaled(primitive.positions, deltas(position), weight);
+    if (const Value normal = target["NORMAL"]; normal && !primitive.normals.empty()) add_scaled(primitive.normals, deltas(normal), weight);
+    if (const Value tangent = target["TANGENT"]; tangent && !primitive.tangents.empty()) add_scaled(primitive.tangents, deltas(tangent), weight);
+    for (const char *other : {"TEXCOORD_0", "TEXCOORD_1", "COLOR_0"})
+      if (target[other]) target[other].warn("texture coordinates and colours are not morphed");
+  }
+}
+
+void Meshes::read_indices(const Value &value, Primitive &primitive) {
+  const Mode mode = static_cast<Mode>(value["mode"].whole(4));
+  std::vector<std::uint32_t> row;
+  if (const Value reference = value["indices"]) {
+    const Accessor accessor = accessors_.open(reference, 1);
+    if (!accessor.backed && !accessor.sparse && value.extension("KHR_draco_mesh_compression"))
+      value.fail("its data is there by KHR_draco_mesh_compression alone, which is not supported");
+    row = accessors_.indices(accessor);
+    for (const std::uint32_t index : row)
+      if (index >= primitive.positions.size())
+        reference.fail("index " + std::to_string(index) + ", but there are " + counted(primitive.positions.size(), "vertices"));
+  } else {
+    accessors_.budget().take(primitive.positions.size(), sizeof(std::uint32_t), value);
+    row.resize(primitive.positions.size());
+    for (std::size_t i = 0; i < row.size(); i++) row[i] = static_cast<std::uint32_t>(i);
+  }
+  if (mode == Mode::triangles && row.size() % 3 != 0)
+    value.warn(counted(row.size(), "vertices") + " are no whole number of triangles: the last " + (row.size() % 3 == 1 ? "one was" : "two were") +
+               " ignored");
+  accessors_.budget().take(row.size(), mode == Mode::triangles ? sizeof(std::uint32_t) : 3 * sizeof(std::uint32_t), value);
+  primitive.indices = triangles_of(row, mode);
+}
+
+bool Meshes::read_primitive(const Value &value, const std::vector<double> &weights, Primitive &primitive) {
+  value.expect_object();
+  value.check_extensions({"KHR_draco_mesh_compression"});
+  const Value mode = value["mode"];
+  const std::uint64_t number = mode.whole(4);
+  if (number > 6) mode.fail(std::to_string(number) + " is no mode: 0 to 6");
+  if (number < 4) {
+    value.context().report.warning(value.full_place(), number == 0 ? "points are not rendered" : "lines are not rendered");
+    return false;
+  }
+  const Value attributes = value["attributes"];
+  attributes.expect_object();
+  if (!attributes["POSITION"]) {
+    value.warn("has no POSITION and was skipped");
+    return false;
+  }
+  if (value.extension("KHR_draco_mesh_compression"))
+    value.context().report.once(value.context().file, "KHR_draco_mesh_compression is not supported: the uncompressed data is read instead");
+  read_attributes(value, primitive);
+  apply_morph_targets(value["targets"], weights, primitive);
+  read_indices(value, primitive);
+  if (primitive.indices.empty()) {
+    value.warn("has no triangle and was skipped");
+    return false;
+  }
+  repair_normals(attributes["NORMAL"], primitive);
+  repair_tangents(attributes["TANGENT"], primitive);
+  return true;
+}
+
+Mesh Meshes::read(const Value &value, const std::vector<double> &weights, Scene &scene) {
+  const Value primitives = value["primitives"];
+  if (primitives.size() == 0) primitives.fail(primitives ? "is empty" : "is missing");
+  Mesh mesh;
+  mesh.name = value["name"].text();
+  for (std::size_t i = 0; i < primitives.size(); i++) {
+    Primitive primitive;
+    if (!read_primitive(primitives[i], weights, primitive)) continue;
+    primitive.material = materials_.material(primitives[i]["material"], scene);
+    mesh.primitives.push_back(std::move(primitive));
+  }
+  return mesh;
+}
+
+int Meshes::mesh(const Value &node, Scene &scene) {
+  const std::size_t index = node["mesh"].index(meshes_.size(), "meshes");
+  const Value value = meshes_[index];
+  value.expect_object();
+  const Value weights_value = node["weights"] ? node["weights"] : value["weights"];
+  const std::vector<double> weights = weights_value.numbers(weights_value.size());
+  for (std::size_t i = 0; i < weights.size(); i++) weights_value[i].real(0);
+  const auto [found, is_new] = numbers_.try_emplace({index, weights}, -1);
+  if (is_new) {
+    value.check_extensions({});
+    Mesh mesh = read(value, weights, scene);
+    if (!mesh.primitives.empty()) {
+      found->second = static_cast<int>(scene.meshes.size());
+      scene.meshes.push_back(std::move(mesh));
+    }
+  }
+  return found->second;
+}
+
+}  // namespace sunstone::gltf

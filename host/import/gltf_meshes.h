@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes: primitives of triangles in every mode, morph targets applied at their default weights.
+#pragma once
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "import/gltf_accessors.h"
+#include "import/gltf_materials.h"
+#include "scene/scene.h"
+
+namespace sunstone::gltf {
+
+class Meshes {
+ public:
+  Meshes(const Value &root, Accessors &accessors, Materials &materials) : meshes_(root["meshes"]), accessors_(accessors), materials_(materials) {}
+
+  // The mesh that a node shows, as a number into Scene::meshes; -1 where nothing of it can be rendered. Nodes that share a mesh, and do not
+  // give it weights of their own, get the same one.
+  int mesh(const Value &node, Scene &scene);
+
+ private:
+  Mesh read(const Value &value, const std::vector<double> &weights, Scene &scene);
+  bool read_primitive(const Value &value, const std::vector<double> &weights, Primitive &primitive);
+  void read_attributes(const Value &value, Primitive &primitive);
+  void apply_morph_targets(const Value &targets, const std::vector<double> &weights, Primitive &primitive);
+  void read_indices(const Value &value, Primitive &primitive);
+
+  Value meshes_;
+  Accessors &accessors_;
+  Materials &materials_;
+  std::map<std::pair<std::size_t, std::vector<double>>, int> numbers_;
+};
+
+}  // namespace sunstone::gltf

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "import/gltf_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+
+namespace sunstone::gltf {
+
+namespace {
+
+constexpr double far_away = 1e30;  // beyond it products of coordinates overflow single precision
+constexpr double pi = 3.14159265358979323846;
+
+// Unit length, or nothing where there is no direction. Square root and division alone, so that every host gives the same bits.
+std::optional<glm::dvec3> unit(const glm::dvec3 &v) {
+  const double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+  if (!(length > 1e-150) || !std::isfinite(length)) return {};
+  return glm::dvec3(v.x / length, v.y / length, v.z / length);
+}
+
+glm::dmat4 compose(const glm::dvec3 &t, const glm::dvec4 &q, const glm::dvec3 &s) {
+  const double x = q.x, y = q.y, z = q.z, w = q.w;
+  return {glm::dvec4(1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w), 0) * s.x,
+          glm::dvec4(2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w), 0) * s.y,
+          glm::dvec4(2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y), 0) * s.z, glm::dvec4(t, 1)};
+}
+
+// Unit quaternion; no rotation, and a warning, where it has no length.
+glm::dvec4 unit_quaternion(const glm::dvec4 &q, const Value &who) {
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (length > 1e-150 && std::isfinite(length)) return q / length;
+  who.warn("a rotation of length zero was taken as none");
+  return {0, 0, 0, 1};
+}
+
+glm::dmat4 local_transform(const Value &node) {
+  if (const Value matrix = node["matrix"]) {
+    const std::vector<double> m = matrix.numbers(16);
+    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) matrix.warn("its last row is not 0 0 0 1 and was taken as that");
+    return {m[0], m[1], m[2], 0, m[4], m[5], m[6], 0, m[8], m[9], m[10], 0, m[12], m[13], m[14], 1};
+  }
+  glm::dvec3 t(0), s(1);
+  glm::dvec4 q(0, 0, 0, 1);
+  if (const Value value = node["translation"]) {
+    const std::vector<double> v = value.numbers(3);
+    t = {v[0], v[1], v[2]};
+  }
+  if (const Value value = node["rotation"]) {
+    const std::vector<double> v = value.numbers(4);
+    q = unit_quaternion({v[0], v[1], v[2], v[3]}, value);
+  }
+  if (const Value value = node["scale"]) {
+    const std::vector<double> v = value.numbers(3);
+    s = {v[0], v[1], v[2]};
+  }
+  return compose(t, q, s);
+}
+
+bool usable(const glm::dmat4 &m) {
+  for (int c = 0; c < 4; c++)
+    for (int r = 0; r < 3; r++)
+      if (!(std::fabs(m[c][r]) <= far_away)) return false;
+  return true;
+}
+
+glm::mat4x3 rounded(const glm::dmat4 &m) { return {glm::vec3(m[0]), glm::vec3(m[1]), glm::vec3(m[2]), glm::vec3(m[3])}; }
+
+std::string name_of(const Value &object, const Value &node) {
+  const std::string name = object["name"].text();
+  return name.empty() ? node["name"].text() : name;
+}
+
+}  // namespace
+
+Nodes::Nodes(const Value &root, Accessors &accessors, Meshes &meshes)
+    : root_(root),
+      nodes_(root["nodes"]),
+      cameras_(root["cameras"]),
+      lights_(root.extension("KHR_lights_punctual")["lights"]),
+      accessors_(accessors),
+      meshes_(meshes) {}
+
+// Strict trees: no node has two parents, and none is its own ancestor.
+void Nodes::check_hierarchy() {
+  const std::size_t count = nodes_.size();
+  parents_.assign(count, -1);
+  children_.resize(count);
+  for (std::size_t i = 0; i < count; i++) {
+    const Value node = nodes_[i];
+    node.expect_object();
+    const Value children = node["children"];
+    children_[i].reserve(children.size());
+    for (std::size_t k = 0; k < children.size(); k++) {
+      const std::size_t child = children[k].index(count, "nodes");
+      if (parents_[child] >= 0)
+        nodes_[child].fail("is a child of nodes[" + std::to_string(parents_[child]) + "] and of nodes[" + std::to_string(i) + "]",
+                           "nodes have to form trees");
+      parents_[child] = static_cast<int>(i);
+      children_[i].push_back(static_cast<std::uint32_t>(child));
+    }
+  }
+  // With one parent each, whatever no root leads to lies on or below a cycle.
+  std::vector<bool> reached(count, false);
+  std::vector<std::size_t> stack;
+  for (std::size_t i = 0; i < count; i++)
+    if (parents_[i] < 0) stack.push_back(i);
+  while (!stack.empty()) {
+    const std::size_t i = stack.back();
+    stack.pop_back();
+    reached[i] = true;
+    stack.insert(stack.end(), children_[i].begin(), children_[i].end());
+  }
+  for (std::size_t i = 0; i < count; i++) {
+    if (reached[i]) continue;
+    std::size_t on_cycle = i;
+    for (std::size_t step = 0; step < count; step++) on_cycle = static_cast<std::size_t>(parents_[on_cycle]);
+    nodes_[on_cycle].fail("is its own ancestor");
+  }
+}
+
+std::vector<std::size_t> Nodes::scene_roots() {
+  std::vector<std::size_t> roots;
+  const Value scenes = root_["scenes"], chosen = root_["scene"];
+  Context &context = root_.context();
+  if (scenes.size() == 0 && !chosen) {
+    context.notices.note(context.file, "it has no scene, so all of its nodes are shown");
+    for (std::size_t i = 0; i < parents_.size(); i++)
+      if (parents_[i] < 0) roots.push_back(i);
+    return roots;
+  }
+  if (!chosen && scenes.size() > 1) context.notices.note(context.file, "the first of its " + std::to_string(scenes.size()) + " scenes is shown");
+  const Value scene = scenes[chosen ? chosen.index(scenes.size(), "scenes") : 0];
+  scene.expect_object();
+  scene.check_extensions({});
+  const Value listed = scene["nodes"];
+  std::vector<bool> seen(parents_.size(), false);
+  for (std::size_t i = 0; i < listed.size(); i++) {
+    const std::size_t node = listed[i].index(parents_.size(), "nodes");
+    if (parents_[node] >= 0)
+      listed[i].fail("nodes[" + std::to_string(node) + "] is no root: it is a child of nodes[" + std::to_string(parents_[node]) + "]");
+    if (seen[node]) listed[i].fail("nodes[" + std::to_string(node) + "] stands there twice");
+    seen[node] = true;
+    roots.push_back(node);
+  }
+  return roots;
+}
+
+void Nodes::import(Scene &scene) {
+  check_hierarchy();
+  struct Visit {
+    std::size_t node;
+    glm::dmat4 parent;
+  };
+  std::vector<Visit> stack;
+  // Depth first, in the file's order: each list is pushed from its end.
+  const std::vector<std::size_t> roots = scene_roots();
+  for (std::size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], glm::dmat4(1)});
+  while (!stack.empty()) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    const Value node = nodes_[visit.node];
+    const glm::dmat4 world = visit.parent * local_transform(node);
+    add_node(node, world, scene);
+    const std::vector<std::uint32_t> &children = children_[visit.node];
+    for (std::size_t i = children.size(); i-- > 0;) stack.push_back({children[i], world});
+  }
+}
+
+void Nodes::add_node(const Value &node, const glm::dmat4 &world, Scene &scene) {
+  node.check_extensions({"KHR_lights_punctual", "EXT_mesh_gpu_instancing"});
+  if (node["skin"]) node.context().report.once(node.context().file, "skins are not applied: skinned meshes are shown as they are stored");
+  const Value mesh = node["mesh"], camera = node["camera"], light = node.extension("KHR_lights_punctual");
+  if (!mesh && !camera && !light) return;
+  if (!usable(world)) {
+    node.warn("its transform is not finite or beyond all measure, so it was left out");
+    return;
+  }
+  if (mesh) add_instances(node, world, scene);
+  if (camera) add_camera(node, world, scene);
+  if (light) add_light(node, world, scene);
+}
+
+void Nodes::add_instances(const Value &node, const glm::dmat4 &world, Scene &scene) {
+  const int mesh = meshes_.mesh(node, scene);
+  if (mesh < 0) return;
+  std::string name = node["name"].text();
+  if (name.empty()) name = scene.meshes[static_cast<std::size_t>(mesh)].name;
+  const Value instancing = node.extension("EXT_mesh_gpu_instancing");
+  if (!instancing) {
+    scene.instances.push_back({std::move(name), mesh, rounded(world)});
+    return;
+  }
+  const Value attributes = instancing["attributes"];
+  attributes.expect_object();
+  std::optional<std::size_t> count;
+  const auto open = [&](const char *key, int components) -> std::optional<Accessor> {
+    const Value attribute = attributes[key];
+    if (!attribute) return {};
+    Accessor accessor = accessors_.open(attribute, components);
+    if (count && *count != accessor.count)
+      attribute.fail("has " + counted(accessor.count, "elements") + ", but another attribute has " + std::to_string(*count));
+    count = accessor.count;
+    return accessor;
+  };
+  const std::optional<Accessor> translation = open("TRANSLATION", 3), rotation = open("ROTATION", 4), scale = open("SCALE", 3);
+  if (!count) attributes.fail("has none of TRANSLATION, ROTATION, SCALE");
+  accessors_.budget().take(*count, sizeof(Instance) + name.size(), node);
+  std::vector<glm::vec3> translations, scales;
+  std::vector<glm::vec4> rotations;
+  if (translation) translations = accessors_.floats<3>(*translation);
+  if (rotation) rotations = accessors_.floats<4>(*rotation);
+  if (scale) scales = accessors_.floats<3>(*scale);
+  for (std::size_t i = 0; i < *count; i++) {
+    const glm::dvec3 t = translation ? glm::dvec3(translations[i]) : glm::dvec3(0), s = scale ? glm::dvec3(scales[i]) : glm::dvec3(1);
+    const glm::dvec4 q = rotation ? unit_quaternion(glm::dvec4(rotations[i]), attributes["ROTATION"]) : glm::dvec4(0, 0, 0, 1);
+    const glm::dmat4 transform = world * compose(t, q, s);
+    if (usable(transform))
+      scene.instances.push_back({name, mesh, rounded(transform)});
+    else
+      instancing.warn("instances whose transform is not finite or beyond all measure were left out");
+  }
+}
+
+void Nodes::add_camera(const Value &node, const glm::dmat4 &world, Scene &scene) {
+  const Value value = cameras_[node["camera"].index(cameras_.size(), "cameras")];
+  value.expect_object();
+  value.check_extensions({});
+  Camera camera;
+  camera.name = name_of(value, node);
+  const std::string type = value["type"].text();
+  if (type == "perspective") {
+    const Value lens = value["perspective"];
+    lens.expect_object();
+    const Value yfov = lens["yfov"], aspect = lens["aspectRatio"];
+    if (!yfov) yfov.fail("is missing");
+    camera.yfov = yfov.real(0);
+    if (!(camera.yfov > 0) || !(static_cast<double>(camera.yfov) < pi)) yfov.fail("an angle of view has to lie between 0 and pi");
+    if (aspect) {
+      camera.aspect = aspect.real(0);
+      if (!(*camera.aspect > 0)) aspect.fail("an aspect ratio has to be above 0");
+    }
+  } else if (type == "orthographic") {
+    camera.orthographic = true;
+    const Value box = value["orthographic"];
+    box.expect_object();
+    for (const char *key : {"xmag", "ymag"}) {
+      if (!box[key]) box[key].fail("is missing");
+      if (!(box[key].real(0) > 0)) box[key].fail("has to be above 0");
+    }
+    camera.half_width = box["xmag"].real(0);
+    camera.half_height = box["ymag"].real(0);
+    camera.aspect = camera.half_width / camera.half_height;
+  } else {
+    value["type"].fail(value["type"] ? "\"" + printable(type) + "\" is neither perspective nor orthographic" : "is missing");
+  }
+  // Rigid: a camera has no size, so its axes are made unit and perpendicular, the line of sight first.
+  const std::optional<glm::dvec3> back = unit(glm::dvec3(world[2]));
+  const std::optional<glm::dvec3> right = back ? unit(glm::cross(glm::dvec3(world[1]), *back)) : std::nullopt;
+  if (!right) {
+    node.warn("its transform leaves a camera no direction, so the camera was left out");
+    return;
+  }
+  camera.transform = {glm::vec3(*right), glm::vec3(glm::cross(*back, *right)), glm::vec3(*back), glm::vec3(world[3])};
+  scene.cameras.push_back(std::move(camera));
+}
+
+// KHR_lights_punctual: shines along the node's -z; neither intensity nor angles are scaled by the node.
+void Nodes::add_light(const Value &node, const glm::dmat4 &world, Scene &scene) {
+  const Value value = lights_[node.extension("KHR_lights_punctual")["light"].index(lights_.size(), "lights")];
+  value.expect_object();
+  value.check_extensions({});
+  Light light;
+  light.name = name_of(value, node);
+  const std::string type = value["type"].text();
+  if (type == "point")
+    light.kind = Light::Kind::point;
+  else if (type == "spot")
+    light.kind = Light::Kind::spot;
+  else if (type == "directional")
+    light.kind = Light::Kind::directional;
+  else
+    value["type"].fail(value["type"] ? "\"" + printable(type) + "\" is none of point, spot, directional" : "is missing");
+  light.intensity = value["color"].factors(glm::vec3(1), 0, 1e18f) * value["intensity"].factor(1, 0, 1e18f);
+  light.position = glm::vec3(world[3]);
+  if (light.kind == Light::Kind::spot) {
+    const Value spot = value["spot"];
+    spot.expect_object();
+    light.outer_angle = spot["outerConeAngle"].factor(0.7853982f, 1e-3f, 1.5707964f);
+    light.inner_angle = spot["innerConeAngle"].factor(0, 0, 1.5707964f);
+    if (!(light.inner_angle < light.outer_angle)) {
+      spot.warn("its inner cone is not within the outer one and was clamped");
+      light.inner_angle = light.outer_angle * 0.999f;  // never equal: the fall-off divides by the difference of their cosines
+    }
+  }
+  if (light.kind != Light::Kind::point) {
+    const std::optional<glm::dvec3> direction = unit(-glm::dvec3(world[2]));
+    if (!direction) {
+      node.warn("its transform leaves a light no direction, so the light was left out");
+      return;
+    }
+    light.direction = glm::vec3(*direction);
+  }
+  scene.lights.push_back(std::move(light));
+}
+
+}  // namespace sunstone::gltf

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// An integrator is an arrangement of stages: a row of a table.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sunstone {
+
+// What one step of a walk may run, in the order of a plan. `gather_*` make a dense queue for the stage behind them.
+enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette };
+
+struct Plan {
+  std::string name, summary, source;
+  bool direct = false;      // shade sends shadow rays, and weights the emitters that are hit against them
+  std::vector<Stage> walk;  // one step of every path; repeated until all have ended
+  std::vector<std::string> refuses;  // emitters that no path of it can meet: "point", "spot", "directional"
+};
+
+std::span<const Plan> integrators();
+
+// UsageError with the names there are.
+const Plan &integrator(const std::string &name);
+
+// The queue that a stage needs has to be filled by one before it, and each that is filled has to be emptied: Error naming both otherwise.
+void check_plan(const Plan &plan);
+
+}  // namespace sunstone

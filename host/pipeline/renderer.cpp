@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace sunstone {
+
+namespace {
+
+constexpr std::uint64_t max_paths_of_a_launch = std::uint64_t(1) << 31;
+constexpr int steps_between_looks = 8;  // of the whole walk, before the host reads how far it is
+
+struct Tile {
+  int x0, y0, width, height;
+  std::uint64_t paths_per_sample() const { return static_cast<std::uint64_t>((width + 3) / 4) * static_cast<std::uint64_t>((height + 3) / 4) * 16; }
+};
+
+// The window in bands of rows, so that no film on the device is larger than `budget` bytes.
+std::vector<Tile> split(const RenderSettings &s, std::size_t bytes_a_pixel, std::size_t budget) {
+  const int width = s.x1 - s.x0, height = s.y1 - s.y0;
+  const std::size_t row = bytes_a_pixel * static_cast<std::size_t>(width);
+  if (row * 4 > budget) throw Error("film", fmt::format("four rows of {} pixels need {} bytes on the device, more than it allows", width, row * 4));
+  int rows = static_cast<int>(std::min<std::size_t>(budget / row, static_cast<std::size_t>(height)));
+  if (rows < height) rows = rows / 4 * 4;
+  std::vector<Tile> tiles;
+  for (int y = 0; y < height; y += rows) tiles.push_back({s.x0, s.y0 + y, width, std::min(rows, height - y)});
+  return tiles;
+}
+
+unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths) {
+  unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : 1u << 16;
+  if (!tuning.pool && paths < pool) pool = static_cast<unsigned>(std::max<std::uint64_t>(paths, 16));
+  return std::max(16u, (pool + 15) / 16 * 16);
+}
+
+}  // namespace
+
+struct Renderer::State {
+  Device device;
+  const Programs &programs;
+  const Plan &plan;
+  RenderSettings settings;
+  kernel::Frame frame{};
+  Film film;
+  RenderCounts counts;
+  DeviceScene scene;
+  std::vector<Tile> tiles;
+  std::unique_ptr<Pool> pool;
+  Buffer<kernel::Frame> device_frame;
+  Buffer<std::int64_t> device_film;
+  std::vector<kernel::uint> seen;  // counts as they were read last
+
+  State(const Device &d, const Programs &p, const Plan &pl, const RenderSettings &s) : device(d), programs(p), plan(pl), settings(s) {}
+  void name_layers();
+  void take_counts(std::vector<kernel::uint> now);
+  std::uint64_t render_launch(StageRunner &runner, std::uint64_t first, std::uint64_t count, std::uint64_t before, std::uint64_t wanted,
+                              const std::function<bool(const RenderProgress &)> &progress);
+  std::uint64_t render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
+                            const std::function<bool(const RenderProgress &)> &progress);
+  void add_tile(const Tile &tile);
+};
+
+void Renderer::State::name_layers() {
+  const auto add = [&](const std::string &name) {
+    film.layers.push_back({name, std::vector<std::int64_t>(film.pixels() * SUN_FILM_CHANNELS * SUN_FILM_BINS)});
+    return static_cast<kernel::uint>(film.layers.size() - 1);
+  };
+  const auto wanted = [&](bool on, const std::string &name) { return on ? add(name) : SUN_NONE; };
+  add("beauty.even");
+  add("beauty.odd");
+  const LayerChoice &choice = settings.layers;
+  frame.layer_bounce = SUN_NONE;
+  if (choice.bounces) {
+    frame.bounce_layers = settings.max_depth + 1;
+    for (unsigned depth = 0; depth <= settings.max_depth; depth++) {
+      const kernel::uint layer = add(fmt::format("bounce.{}", depth));
+      if (depth == 0) frame.layer_bounce = layer;
+    }
+  }
+  frame.layer_albedo = wanted(choice.albedo, "albedo");
+  frame.layer_normal = wanted(choice.normal, "normal");
+  frame.layer_depth = wanted(choice.depth, "Z");
+  frame.layer_position = wanted(choice.position, "position");
+  frame.layer_object = wanted(choice.object, "object_id");
+  frame.layer_material = wanted(choice.material, "material_id");
+  frame.layer_alpha = wanted(choice.alpha || settings.transparent_background, "alpha");
+}
+
+Renderer::Renderer(const Device &device, const Programs &programs, const FlatScene &scene, const kernel::Camera &camera, const RenderSettings &settings, const Tuning &tuning)
+    : state_(std::make_unique<State>(device, programs, integrator(settings.integrator), settings)) {
+  State &s = *state_;
+  check_plan(s.plan);
+  s.film.picture_width = settings.width;
+  s.film.picture_height = settings.height;
+  s.film.x0 = settings.x0;
+  s.film.y0 = settings.y0;
+  s.film.x1 = settings.x1;
+  s.film.y1 = settings.y1;
+  s.film.scene_hash = scene.scene_hash.hex();
+  s.film.settings = film_settings(settings, camera);
+  s.name_layers();
+
+  kernel::Frame &frame = s.frame;
+  const FilterTable filter = make_filter_table(settings.filter);
+  frame.camera = camera;
+  frame.width = static_cast<kernel::uint>(settings.width);
+  frame.height = static_cast<kernel::uint>(settings.height);
+  frame.seed = settings.seed;
+  frame.sampler = settings.independent ? SUN_SAMPLER_INDEPENDENT : SUN_SAMPLER_SOBOL;
+  frame.max_depth = settings.max_depth;
+  frame.roulette_depth = settings.roulette_depth;
+  frame.filter_radius = settings.filter.radius;
+  frame.filter_weight = filter.weight;
+  frame.filter_negative_from = filter.negative_from;
+  if (settings.transparent_background) frame.flags |= SUN_FRAME_TRANSPARENT;
+  if (s.plan.direct) frame.flags |= SUN_FRAME_DIRECT;
+  s.scene = upload(device, scene, filter.inverse_cdf, frame);
+
+  const std::size_t bytes_a_pixel = s.film.layers.size() * SUN_FILM_CHANNELS * SUN_FILM_BINS * sizeof(std::int64_t);
+  const std::size_t room = device.info().memory > device.allocated() ? (device.info().memory - device.allocated()) / 2 : 0;
+  s.tiles = split(settings, bytes_a_pixel, std::min(device.info().max_allocation, room));
+  frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16);
+  s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk);
+  s.device_frame = Buffer<kernel::Frame>(device, 1, "frame");
+  s.device_film = Buffer<std::int64_t>(
+      device, s.film.layers.size() * static_cast<std::size_t>(s.tiles[0].width) * static_cast<std::size_t>(s.tiles[0].height) * SUN_FILM_CHANNELS * SUN_FILM_BINS, "film");
+}
+
+Renderer::~Renderer() = default;
+
+// Adds what was counted since the last look; the device's counters wrap around.
+void Renderer::State::take_counts(std::vector<kernel::uint> now) {
+  const auto since = [&](std::size_t at) { return static_cast<std::uint64_t>(now[at] - seen[at]); };
+  for (std::size_t i = 0; i < SUN_ENDED_COUNT; i++) {
+    counts.ended[i] += since(SUN_COUNT_ENDED + i);
+    counts.paths += since(SUN_COUNT_ENDED + i);
+    counts.camera_rays += since(SUN_COUNT_ENDED + i);
+  }
+  counts.camera_rays += since(SUN_COUNT_RAYS);
+  counts.bounce_rays += since(SUN_COUNT_RAYS + 1);
+  counts.shadow_rays += since(SUN_COUNT_RAYS + 2);
+  counts.clamped += since(SUN_COUNT_CLAMPED);
+  counts.nan += since(SUN_COUNT_NAN);
+  for (std::size_t i = 0; i < SUN_COUNT_DEPTHS; i++) counts.ended_by_depth[i] += since(SUN_COUNT_BY_DEPTH + i);
+  seen = std::move(now);
+}
+
+// One launch of `count` samples from `first` on: steps until every path has ended. Returns how many samples were done.
+std::uint64_t Renderer::State::render_launch(StageRunner &runner, std::uint64_t first, std::uint64_t count, std::uint64_t before, std::uint64_t wanted,
+                                             const std::function<bool(const RenderProgress &)> &progress) {
+  frame.sample_first = static_cast<kernel::uint>(first);
+  device_frame.upload(std::span(&frame, 1));
+  const std::uint64_t per_sample = frame.paths_per_sample;
+  seen.assign(2 * SUN_COUNT_WORDS, 0);
+  seen[SUN_COUNT_PATHS] = static_cast<kernel::uint>(count * per_sample);
+  pool->counts.upload(seen);
+  bool stopping = false;
+  for (;;) {
+    for (int step = 0; step < steps_between_looks; step++)
+      for (const Stage stage : plan.walk) {
+        if (stage == Stage::first_hit && film.layers.size() <= SUN_LAYER_FIRST_OPTIONAL + frame.bounce_layers) continue;
+        if ((stage == Stage::gather_shadow_rays || stage == Stage::occlude) && frame.emitter_count == 0) continue;
+        runner.run(stage);
+      }
+    take_counts(pool->counts.download());
+    const std::uint64_t begun = seen[SUN_COUNT_NEXT_PATH];
+    if (!stopping && progress && !progress({before + begun, wanted})) {
+      stopping = true;
+      count = std::min(count, (begun + per_sample - 1) / per_sample);
+      const kernel::uint paths = static_cast<kernel::uint>(count * per_sample);
+      pool->counts.upload(std::span(&paths, 1), SUN_COUNT_PATHS);
+    }
+    if (seen[SUN_COUNT_LIVE] == 0 && begun >= count * per_sample) break;
+  }
+  return count;
+}
+
+std::uint64_t Renderer::State::render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
+                                           const std::function<bool(const RenderProgress &)> &progress) {
+  frame.tile_x0 = static_cast<kernel::uint>(tile.x0);
+  frame.tile_y0 = static_cast<kernel::uint>(tile.y0);
+  frame.tile_width = static_cast<kernel::uint>(tile.width);
+  frame.tile_height = static_cast<kernel::uint>(tile.height);
+  frame.paths_per_sample = static_cast<kernel::uint>(tile.paths_per_sample());
+  device_film.fill_zero();
+  StageRunner runner(programs, scene, *pool, device_frame, device_film);
+  const std::uint64_t at_once = std::max<std::uint64_t>(1, max_paths_of_a_launch / tile.paths_per_sample());
+  std::uint64_t done = range.first;
+  while (done < range.last) {
+    const std::uint64_t count = std::min(at_once, range.last - done);
+    const std::uint64_t finished = render_launch(runner, done, count, begun, wanted, progress);
+    begun += finished * tile.paths_per_sample();
+    done += finished;
+    if (finished < count) break;
+  }
+  add_tile(tile);
+  return done;
+}
+
+void Renderer::State::add_tile(const Tile &tile) {
+  constexpr std::size_t values_a_pixel = SUN_FILM_CHANNELS * SUN_FILM_BINS;
+  const std::size_t tile_values = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height) * values_a_pixel;
+  const std::size_t at = static_cast<std::size_t>(tile.y0 - film.y0) * static_cast<std::size_t>(film.width()) * values_a_pixel;  // tiles are whole rows
+  for (std::size_t layer = 0; layer < film.layers.size(); layer++) {
+    const std::vector<std::int64_t> values = device_film.download(layer * tile_values, tile_values);
+    std::int64_t *out = film.layers[layer].values.data() + at;
+    for (std::size_t i = 0; i < tile_values; i++)
+      out[i] = static_cast<std::int64_t>(static_cast<std::uint64_t>(out[i]) + static_cast<std::uint64_t>(values[i]));
+  }
+}
+
+SampleRange Renderer::render(SampleRange wanted, const std::function<bool(const RenderProgress &)> &progress) {
+  State &s = *state_;
+  if (wanted.first >= wanted.last) return {wanted.first, wanted.first};
+  if (wanted.last > (std::uint64_t(1) << 32)) throw UsageError("--samples", "sample numbers end at 2^32");
+  std::uint64_t per_sample = 0, begun = 0;
+  for (const Tile &tile : s.tiles) per_sample += tile.paths_per_sample();
+  const std::uint64_t total = per_sample * (wanted.last - wanted.first);
+  SampleRange done{wanted.first, wanted.first};
+  if (s.tiles.size() == 1) {
+    done.last = s.render_tile(s.tiles[0], wanted, begun, total, progress);
+  } else {
+    // Every band gets the same samples: a call may end between them only.
+    constexpr std::uint64_t at_once = 16;
+    bool go_on = true;
+    while (go_on && done.last < wanted.last) {
+      const SampleRange part{done.last, std::min(wanted.last, done.last + at_once)};
+      for (const Tile &tile : s.tiles) s.render_tile(tile, part, begun, total, [&](const RenderProgress &p) { return go_on = go_on && (!progress || progress(p)), true; });
+      done.last = part.last;
+    }
+  }
+  insert_samples(s.film.samples, done);
+  s.film.clamped = s.counts.clamped;
+  s.film.nan = s.counts.nan;
+  return done;
+}
+
+const Film &Renderer::film() const { return state_->film; }
+const RenderCounts &Renderer::counts() const { return state_->counts; }
+std::size_t Renderer::film_bytes() const { return state_->device_film.bytes(); }
+std::size_t Renderer::scene_bytes() const { return state_->scene.bytes; }
+unsigned Renderer::pool_slots() const { return state_->pool->slots; }
+std::size_t Renderer::pool_bytes() const {
+  const Pool &p = *state_->pool;
+  return p.paths.bytes() + p.status.bytes() + p.hits.bytes() + p.shadow_rays.bytes() + 2 * p.rays[0].bytes() + p.shadow_queue.bytes();
+}
+
+std::map<std::string, std::string> film_settings(const RenderSettings &s, const kernel::Camera &camera) {
+  Hasher hasher;
+  hasher.bytes(&camera, sizeof camera);
+  return {{"integrator", s.integrator},
+          {"max_depth", std::to_string(s.max_depth)},
+          {"roulette_depth", std::to_string(s.roulette_depth)},
+          {"seed", std::to_string(s.seed)},
+          {"sampler", s.independent ? "independent" : "sobol"},
+          {"filter", filter_name(s.filter)},
+          {"filter_radius", fmt::format("{}", s.filter.radius)},
+          {"background", s.transparent_background ? "transparent" : "scene"},
+          {"camera", hasher.digest().hex()}};
+}
+
+}  // namespace sunstone

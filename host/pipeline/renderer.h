@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// (plan, picture, samples) -> film, on one device.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "film/film.h"
+#include "pipeline/plan.h"
+#include "pipeline/settings.h"
+#include "pipeline/stages.h"
+
+namespace sunstone {
+
+struct RenderCounts {
+  std::uint64_t paths = 0, clamped = 0, nan = 0;
+  std::uint64_t ended[SUN_ENDED_COUNT] = {};              // light, depth, escaped, absorbed: they add up to the paths
+  std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
+  std::vector<std::uint64_t> ended_by_depth = std::vector<std::uint64_t>(SUN_COUNT_DEPTHS);  // paths that ended after so many scatterings
+};
+
+struct RenderProgress {
+  std::uint64_t paths_begun = 0, paths_wanted = 0;  // of this call
+};
+
+class Renderer {
+ public:
+  // Builds pool and film on the device. `programs` have to outlive the renderer.
+  Renderer(const Device &device, const Programs &programs, const FlatScene &scene, const kernel::Camera &camera, const RenderSettings &settings, const Tuning &tuning);
+  ~Renderer();
+
+  // Renders samples [first, last) of every pixel and adds them to the film. `progress` is asked between launches; where it answers false the call ends
+  // after the samples that have begun, all pixels alike. Returns what was done: [first, done).
+  SampleRange render(SampleRange wanted, const std::function<bool(const RenderProgress &)> &progress);
+
+  const Film &film() const;
+  const RenderCounts &counts() const;
+  std::size_t pool_bytes() const;
+  std::size_t film_bytes() const;
+  std::size_t scene_bytes() const;
+  unsigned pool_slots() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// What decides the bits, for the film's header: refused to be mixed by merge and --resume.
+std::map<std::string, std::string> film_settings(const RenderSettings &settings, const kernel::Camera &camera);
+
+}  // namespace sunstone

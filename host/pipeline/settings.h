@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is to be rendered (decides the bits) and how (never does).
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "flatten/flatten.h"
+#include "pipeline/filter.h"
+
+namespace sunstone {
+
+// Layers of the first hit that can be asked for, beside the beauty.
+struct LayerChoice {
+  bool bounces = false, albedo = false, normal = false, depth = false, position = false, object = false, material = false, alpha = false;
+};
+
+struct RenderSettings {
+  int width = 1280, height = 720;
+  int x0 = 0, y0 = 0, x1 = 1280, y1 = 720;  // crop window, half-open
+  std::string integrator = "path";
+  unsigned max_depth = 16, roulette_depth = 4;
+  std::uint32_t seed = 0;
+  bool independent = false;  // sampler: plain hashes instead of Sobol'
+  Filter filter;
+  bool transparent_background = false;
+  LayerChoice layers;
+};
+
+struct Tuning {
+  unsigned pool = 0;   // slots; 0: chosen by the device
+  unsigned lanes = 0;  // 1, 8 or 16; 0: chosen by the device
+};
+
+}  // namespace sunstone

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/stages.h"
+
+#include <numeric>
+
+#include "shared/options.h"
+#include "shared/path_words.h"
+
+namespace sunstone {
+
+namespace {
+
+Switches shading(const Variant &v) {
+  return {{"LANES", static_cast<int>(v.lanes)}, {"SUN_COLUMNS", v.columns}, {"SUN_SPECULAR", v.specular}, {"SUN_TEXTURES", v.textures}};
+}
+Switches tracing(const Variant &v) {
+  Switches switches = shading(v);
+  switches["LANES"] = 1;
+  switches["SUN_LAYOUT"] = v.layout == Layout::binary ? SUN_LAYOUT_BINARY : v.layout == Layout::wide8 ? SUN_LAYOUT_WIDE8 : SUN_LAYOUT_WIDE16;
+  switches["SUN_PASSABLE"] = v.passable;
+  return switches;
+}
+
+}  // namespace
+
+Variant device_variant(const DeviceInfo &info) {
+  Variant variant;
+  variant.layout = device_layout(info);
+  if (info.cpu && info.native_float_width >= 8) {
+    variant.lanes = info.native_float_width >= 16 ? 16 : 8;
+  } else if (!info.cpu) {
+    variant.columns = info.gpu;
+    variant.chunk = info.gpu ? 64 : 1024;
+  }
+  return variant;
+}
+
+Layout device_layout(const DeviceInfo &info) {
+  if (!info.cpu || info.native_float_width < 4) return Layout::binary;
+  return info.native_float_width >= 16 ? Layout::wide16 : Layout::wide8;
+}
+
+Programs::Programs(const Device &device, const Variant &v)
+    : variant(v),
+      generate(device, "stages/generate.cl", shading(v)),
+      intersect(device, "stages/intersect.cl", tracing(v)),
+      first_hit(device, "stages/first_hit.cl", shading(v)),
+      shade(device, "stages/shade.cl", shading(v)),
+      occlude(device, "stages/occlude.cl", tracing(v)),
+      roulette(device, "stages/roulette.cl", shading(v)),
+      compact(device, "stages/compact.cl", {{"SUN_CHUNK", static_cast<int>(v.chunk)}}) {}
+
+Pool::Pool(const Device &device, unsigned slots_, unsigned chunk)
+    : slots(slots_),
+      chunks((slots_ + chunk - 1) / chunk),
+      paths(device, static_cast<std::size_t>(slots) * kernel::SUN_PATH_WORDS, "paths"),
+      status(device, slots, "path status"),
+      hits(device, slots, "hits"),
+      shadow_rays(device, slots, "shadow rays"),
+      rays{Buffer<kernel::uint>(device, slots, "ray queue"), Buffer<kernel::uint>(device, slots, "ray queue")},
+      shadow_queue(device, slots, "shadow queue"),
+      chunk_counts(device, chunks, "queue chunks"),
+      counts(device, 2 * SUN_COUNT_WORDS, "counts") {
+  std::vector<kernel::uint> order(slots);
+  std::iota(order.begin(), order.end(), 0u);
+  rays[0].upload(order);
+  status.fill_zero();
+  paths.fill_zero();
+}
+
+StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool &pool, const Buffer<kernel::Frame> &frame, const Buffer<std::int64_t> &film)
+    : scene_(scene),
+      pool_(pool),
+      frame_(frame),
+      film_(film),
+      lanes_(p.variant.lanes),
+      generate_(p.generate, "generate"),
+      intersect_(p.intersect, "intersect"),
+      first_hit_(p.first_hit, "first_hit"),
+      shade_(p.shade, "shade"),
+      occlude_(p.occlude, "occlude"),
+      roulette_(p.roulette, "roulette"),
+      count_(p.compact, "count_chunks"),
+      scan_(p.compact, "scan"),
+      scatter_(p.compact, "scatter_chunks") {}
+
+void StageRunner::gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out) {
+  count_.run(pool_.chunks, frame_, queue, pool_.status, pool_.counts, pool_.chunk_counts, bit);
+  scan_.run(1, frame_, pool_.counts, pool_.chunk_counts, bit);
+  scatter_.run(pool_.chunks, frame_, queue, pool_.status, pool_.counts, pool_.chunk_counts, out, bit);
+}
+
+void StageRunner::run(Stage stage) {
+  const Buffer<kernel::uint> &rays = pool_.rays[current_];
+  const std::size_t bundles = (pool_.slots + lanes_ - 1) / lanes_;
+  switch (stage) {
+    case Stage::gather_paths:
+      gather(SUN_STATUS_ALIVE, rays, pool_.rays[1 - current_]);
+      current_ = 1 - current_;
+      break;
+    case Stage::generate: generate_.run(bundles, frame_, scene_.records, pool_.paths, pool_.status, rays, pool_.counts); break;
+    case Stage::intersect:
+      intersect_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.instances, scene_.top_root, pool_.paths,
+                     pool_.status, pool_.hits, rays, pool_.counts);
+      break;
+    case Stage::first_hit:
+      first_hit_.run(bundles, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1],
+                     scene_.pages[2], scene_.pages[3], pool_.paths, pool_.status, pool_.hits, rays, pool_.counts, film_);
+      break;
+    case Stage::shade:
+      shade_.run(bundles, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1],
+                 scene_.pages[2], scene_.pages[3], pool_.paths, pool_.status, pool_.hits, pool_.shadow_rays, rays, pool_.counts, film_);
+      break;
+    case Stage::gather_shadow_rays: gather(SUN_STATUS_SHADOW, rays, pool_.shadow_queue); break;
+    case Stage::occlude:
+      occlude_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.vertices, scene_.extras,
+                   scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.shadow_rays,
+                   pool_.shadow_queue, pool_.counts, film_);
+      break;
+    case Stage::roulette: roulette_.run(bundles, frame_, pool_.paths, pool_.status, rays, pool_.counts); break;
+  }
+}
+
+}  // namespace sunstone

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stages on one device: their programs, and the kernels bound to a scene, a pool and a film.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "device/kernel.h"
+#include "flatten/flatten.h"
+#include "pipeline/plan.h"
+#include "pipeline/settings.h"
+#include "pipeline/upload.h"
+#include "shared/queues.h"
+
+namespace sunstone {
+
+// What the programs are compiled for. None of it changes a bit.
+struct Variant {
+  unsigned lanes = 1;
+  Layout layout = Layout::binary;
+  bool columns = false;
+  unsigned chunk = 1024;
+  bool passable = true, specular = true, textures = true;
+  bool operator==(const Variant &) const = default;
+};
+
+// Lanes, layout of paths and chunks that suit a device: explicit vectors on CPUs, one path a work-item in columns on GPUs.
+Variant device_variant(const DeviceInfo &info);
+// The layout of the BVH that suits a device.
+Layout device_layout(const DeviceInfo &info);
+
+// Compiled programs, one a stage.
+struct Programs {
+  Programs(const Device &device, const Variant &variant);
+  Variant variant;
+  Program generate, intersect, first_hit, shade, occlude, roulette, compact;
+};
+
+// Paths and queues of one pool.
+struct Pool {
+  Pool(const Device &device, unsigned slots, unsigned chunk);
+  unsigned slots, chunks;
+  Buffer<kernel::uint> paths;       // SUN_PATH_WORDS a slot
+  Buffer<kernel::uint> status;
+  Buffer<kernel::Hit> hits;
+  Buffer<kernel::ShadowRay> shadow_rays;
+  Buffer<kernel::uint> rays[2];     // the ray queue and its successor
+  Buffer<kernel::uint> shadow_queue;
+  Buffer<kernel::uint> chunk_counts;
+  Buffer<kernel::uint> counts;      // twice SUN_COUNT_WORDS
+};
+
+// Launches stages of a plan over a pool. Everything that is enqueued runs in order.
+class StageRunner {
+ public:
+  StageRunner(const Programs &programs, const DeviceScene &scene, const Pool &pool, const Buffer<kernel::Frame> &frame, const Buffer<std::int64_t> &film);
+  void run(Stage stage);
+
+ private:
+  void gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out);
+  const DeviceScene &scene_;
+  const Pool &pool_;
+  const Buffer<kernel::Frame> &frame_;
+  const Buffer<std::int64_t> &film_;
+  unsigned lanes_;
+  int current_ = 0;  // which of pool.rays is the queue
+  Kernel generate_, intersect_, first_hit_, shade_, occlude_, roulette_, count_, scan_, scatter_;
+};
+
+}  // namespace sunstone

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Accessors of the path pool, made from the list of fields: LANES paths at a time, in registers as vectors, in memory as records or columns.
+#ifndef SUN_PATH_PATH_H
+#define SUN_PATH_PATH_H
+#include "math/vector.h"
+#include "shared/path_words.h"
+#include "shared/queues.h"
+
+SUN_NAMESPACE_BEGIN
+
+typedef real path_lanes_float;
+typedef uint_n path_lanes_uint;
+#define PATH_LANES_OF_float(bits) real_of_bits(bits)
+#define PATH_LANES_OF_uint(bits) (bits)
+#define PATH_BITS_OF_float(value) bits_of_real(value)
+#define PATH_BITS_OF_uint(value) (value)
+
+// LANES paths.
+typedef struct Path {
+#define PATH_FIELD(type, name) path_lanes_##type name;
+#include "shared/path_fields.h"
+#undef PATH_FIELD
+} Path;
+
+// One record of SUN_PATH_WORDS words a slot: one cache line whatever the order of slots. On GPUs a column a field.
+typedef struct Paths {
+  SUN_GLOBAL uint *words;
+  uint pool;
+} Paths;
+
+SUN_FN uint path_word(const Paths *paths, uint slot, uint field) {
+  return SUN_COLUMNS ? field * paths->pool + slot : slot * SUN_PATH_WORDS + field;
+}
+
+// Lanes that are switched off have to name a slot of the pool too.
+SUN_FN Path path_load(const Paths *paths, uint_n slots) {
+  Path path;
+  uint slot[LANES], word[LANES];
+  LANES_STORE(slots, slot);
+#define PATH_FIELD(type, name)                                                                                                   \
+  for (int lane = 0; lane < LANES; lane++) word[lane] = paths->words[path_word(paths, slot[lane], SUN_PATH_##name)];             \
+  path.name = PATH_LANES_OF_##type(LANES_LOAD(word));
+#include "shared/path_fields.h"
+#undef PATH_FIELD
+  return path;
+}
+
+SUN_FN void path_store(const Paths *paths, uint_n slots, mask active, const Path *path) {
+  uint slot[LANES];
+  int on[LANES];
+  uint word[SUN_PATH_WORDS][LANES];
+  LANES_STORE(slots, slot);
+  LANES_STORE(active, on);
+#define PATH_FIELD(type, name) LANES_STORE(PATH_BITS_OF_##type(path->name), word[SUN_PATH_##name]);
+#include "shared/path_fields.h"
+#undef PATH_FIELD
+  for (int lane = 0; lane < LANES; lane++)
+    if (on[lane])
+      for (uint field = 0; field < SUN_PATH_WORDS; field++) paths->words[path_word(paths, slot[lane], field)] = word[field][lane];
+}
+
+// LANES words of a column of its own, such as the status.
+SUN_FN void store_uint(SUN_GLOBAL uint *table, uint_n index, mask active, uint_n value) {
+  uint at[LANES], word[LANES];
+  int on[LANES];
+  LANES_STORE(index, at);
+  LANES_STORE(value, word);
+  LANES_STORE(active, on);
+  for (int lane = 0; lane < LANES; lane++)
+    if (on[lane]) table[at[lane]] = word[lane];
+}
+
+SUN_NAMESPACE_END
+#endif

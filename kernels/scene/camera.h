@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The camera: pixel and sample -> film position by the filter -> ray.
+#ifndef SUN_SCENE_CAMERA_H
+#define SUN_SCENE_CAMERA_H
+#include "math/sampler.h"
+#include "math/warp.h"
+#include "shared/frame.h"
+#include "shared/tables.h"
+
+SUN_NAMESPACE_BEGIN
+
+typedef struct CameraRay {
+  vec3 origin, direction;  // direction has unit length
+  real weight;             // of the filter, negative in the outer ring of Mitchell
+} CameraRay;
+
+// One coordinate by the filter's inverse cdf of |f|, linear within a cell.
+SUN_FN real filter_offset(const SUN_GLOBAL float *tables, real u) {
+  real x = u * (float)SUN_FILTER_TABLE;
+  real cell = floor(x);
+  cell = min_real(cell, (real)((float)(SUN_FILTER_TABLE - 1)));
+  uint_n at = uint_of_int(int_of_real(cell)) + (uint_n)(SUN_TABLE_FILTER);
+  real lower = gather_real(tables, at), upper = gather_real(tables, at + (uint_n)(1));
+  return lerp_real(lower, upper, x - cell);
+}
+
+// Filter importance sampling [Ernst06]: a sample belongs to one pixel, its position is drawn from the filter about the pixel's centre.
+SUN_FN CameraRay camera_ray(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL float *tables, const SamplerKey *key, uint_n pixel_x, uint_n pixel_y) {
+  CameraRay ray;
+  vec2 u = sample_2d(key, (uint_n)(SUN_DIM_FILTER));
+  real dx = filter_offset(tables, u.x), dy = filter_offset(tables, u.y);
+  // Where |x| is beyond this the filter is negative (Mitchell); the product of two factors decides the sign.
+  mask negative_x = fabs(dx) > (real)(frame->filter_negative_from), negative_y = fabs(dy) > (real)(frame->filter_negative_from);
+  real weight = (real)(frame->filter_weight);
+  weight = negative_x ? -weight : weight;
+  weight = negative_y ? -weight : weight;
+  ray.weight = weight;
+  real x = real_of_uint(pixel_x) + 0.5f + dx, y = real_of_uint(pixel_y) + 0.5f + dy;
+  real sx = 2.0f * x / (float)frame->width - 1.0f, sy = 1.0f - 2.0f * y / (float)frame->height;
+  const SUN_GLOBAL Camera *camera = &frame->camera;
+  vec3 position = make_vec3((real)(camera->position[0]), (real)(camera->position[1]), (real)(camera->position[2]));
+  vec3 right = make_vec3((real)(camera->right[0]), (real)(camera->right[1]), (real)(camera->right[2]));
+  vec3 up = make_vec3((real)(camera->up[0]), (real)(camera->up[1]), (real)(camera->up[2]));
+  vec3 forward = make_vec3((real)(camera->forward[0]), (real)(camera->forward[1]), (real)(camera->forward[2]));
+  vec3 across = add3(scale3(right, sx), scale3(up, sy));
+  if (camera->kind == SUN_CAMERA_ORTHOGRAPHIC) {
+    ray.origin = add3(position, across);
+    ray.direction = forward;
+    return ray;
+  }
+  vec3 direction = add3(forward, across);
+  ray.origin = position;
+  if (camera->lens_radius > 0.0f) {
+    // Thin lens: all rays of a film position meet in the plane of focus.
+    vec2 disk = square_to_disk(sample_2d(key, (uint_n)(SUN_DIM_LENS)));
+    vec3 on_lens = add3(scale3(normalize3(right), disk.x * camera->lens_radius), scale3(normalize3(up), disk.y * camera->lens_radius));
+    direction = sub3(scale3(direction, (real)(camera->focus_distance)), on_lens);
+    ray.origin = add3(position, on_lens);
+  }
+  ray.direction = normalize3(direction);
+  return ray;
+}
+
+SUN_NAMESPACE_END
+#endif

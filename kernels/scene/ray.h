@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ray, and the ray made ready for one space (the world, or an instance's). Plain floats: one ray per work-item, whatever LANES is.
+//
+// Every box of every layout is tested by one function, the slabs of prepare_ray: the ray meets the plane at bound b at
+//   t(b) = fma(b, reciprocal, offset).
+// That is the rounding of a monotone function, so where one box contains another, so do their intervals, exactly. It is also conservative
+// [Woop13, Ize13]: the offsets move near planes nearer and far planes farther by more than the edge test of triangle.h and the slabs themselves can err.
+#ifndef SUN_SCENE_RAY_H
+#define SUN_SCENE_RAY_H
+#include "math/real.h"
+#include "shared/geometry.h"
+#include "shared/types.h"
+
+SUN_NAMESPACE_BEGIN
+
+// What any_hit and closest_hit count.
+#define SUN_WANT_ALL 0u
+#define SUN_WANT_OPAQUE 1u    // triangles without SUN_ID_PASSABLE
+#define SUN_WANT_PASSABLE 2u  // triangles with it
+
+// Hits count where t < t_max and (t, instance, primitive) > (passed_t, passed_instance, passed_primitive), compared in that order.
+// A new ray has passed_t = 0 and both numbers SUN_NONE, so t > 0; a ray that goes on behind a hit has that hit's, and needs no offset.
+typedef struct Ray {
+  float origin[3], direction[3];  // the direction need not be of unit length
+  float t_max;
+  float passed_t;
+  uint passed_instance, passed_primitive;
+} Ray;
+
+// The ray's constants have to stay in registers through the walk, which a call to anything that takes their address would prevent (a third of the speed).
+#define SUN_INLINE static inline __attribute__((always_inline))
+
+#define SUN_INFINITY as_float(0x7f800000u)
+#define SUN_LARGEST 3.40282347e+38f
+// Not fmin and fmax: their rules for NaN cost a fifth of a traversal. Arguments are named values, not expressions.
+#define SUN_LESSER(a, b) ((a) < (b) ? (a) : (b))
+#define SUN_GREATER(a, b) ((a) > (b) ? (a) : (b))
+
+typedef struct PreparedRay {
+  float reciprocal[3], near_offset[3], far_offset[3];  // of the slabs
+  int negative[3];                                     // 1 where the direction points to smaller values: the near plane is then the upper one
+  int axis[3];                                         // of the edge test [Woop13]: the third is the direction's largest; they keep the winding
+  float origin[3];                                     // along those axes
+  float shear[3];
+} PreparedRay;
+
+// An interval of t; empty where near > far.
+typedef struct Interval { float near, far; } Interval;
+
+SUN_INLINE float pick(float x, float y, float z, int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+
+// `reach` bounds, by axis, how far a vertex of this space lies from the origin: it scales the rounding errors that the slabs make up for.
+// False where the ray has no direction or is not finite: it hits nothing.
+SUN_INLINE int prepare_ray(PreparedRay *ray, const float *origin, const float *direction, const float *reach) {
+  const float ax = fabs(direction[0]), ay = fabs(direction[1]), az = fabs(direction[2]);
+  const int kz = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
+  int kx = kz == 2 ? 0 : kz + 1, ky = kz == 0 ? 2 : kz - 1;
+  const float along = pick(direction[0], direction[1], direction[2], kz);
+  const float largest = fabs(along);
+  int usable = largest > 0.0f;
+  // Directions parallel to a slab get a large finite reciprocal: no 0 * infinity below.
+  const float tiny = largest * 8.67361738e-19f, least = 7.88860905e-31f;  // 2^-60, 2^-100
+  const float floor_direction = SUN_GREATER(tiny, least);
+  const float reach_z = pick(reach[0], reach[1], reach[2], kz);
+  for (int axis = 0; axis < 3; axis++) {
+    const float o = origin[axis], d = direction[axis];
+    usable = usable & (fabs(o) <= SUN_LARGEST) & (fabs(d) <= SUN_LARGEST);
+    const float r = 1.0f / (fabs(d) < floor_direction ? copysign(floor_direction, d) : d);
+    // With u = 2^-24, a sheared vertex errs by at most u (2 |vertex - origin| + 5 |along z|), a slab by u (2 |bound - origin| + 2 |origin|).
+    const float error = fma(4.76837158e-07f, reach[axis] + reach_z, 2.38418579e-07f * fabs(o)) * fabs(r);  // 8u, 4u
+    const float margin = error < 1e38f ? error : 1e38f;
+    const float product = -(o * r);
+    const float offset = product < -1e38f ? -1e38f : product < 1e38f ? product : 1e38f;
+    ray->reciprocal[axis] = r;
+    ray->near_offset[axis] = offset - margin;
+    ray->far_offset[axis] = offset + margin;
+    ray->negative[axis] = r < 0.0f;
+  }
+  if (along < 0.0f) {  // keeps the winding, so that the sign of the determinant tells front from back
+    const int k = kx;
+    kx = ky;
+    ky = k;
+  }
+  ray->axis[0] = kx;
+  ray->axis[1] = ky;
+  ray->axis[2] = kz;
+  ray->origin[0] = pick(origin[0], origin[1], origin[2], kx);
+  ray->origin[1] = pick(origin[0], origin[1], origin[2], ky);
+  ray->origin[2] = pick(origin[0], origin[1], origin[2], kz);
+  const float inverse = 1.0f / along;
+  ray->shear[0] = pick(direction[0], direction[1], direction[2], kx) * inverse;
+  ray->shear[1] = pick(direction[0], direction[1], direction[2], ky) * inverse;
+  ray->shear[2] = inverse;
+  return usable;
+}
+
+SUN_INLINE float near_plane(const PreparedRay *ray, int axis, float lower, float upper) {
+  return fma(ray->negative[axis] ? upper : lower, ray->reciprocal[axis], ray->near_offset[axis]);
+}
+SUN_INLINE float far_plane(const PreparedRay *ray, int axis, float lower, float upper) {
+  return fma(ray->negative[axis] ? lower : upper, ray->reciprocal[axis], ray->far_offset[axis]);
+}
+
+// Where the ray is inside a box, from `from` on (not negative; never gives -0).
+SUN_INLINE Interval box_interval(const PreparedRay *ray, float lx, float ly, float lz, float ux, float uy, float uz, float from) {
+  const float nx = near_plane(ray, 0, lx, ux), ny = near_plane(ray, 1, ly, uy), nz = near_plane(ray, 2, lz, uz);
+  const float fx = far_plane(ray, 0, lx, ux), fy = far_plane(ray, 1, ly, uy), fz = far_plane(ray, 2, lz, uz);
+  const float n = SUN_GREATER(nx, ny), m = SUN_GREATER(n, nz), f = SUN_LESSER(fx, fy);
+  Interval interval;
+  interval.near = SUN_GREATER(m, from);
+  interval.far = SUN_LESSER(f, fz);
+  return interval;
+}
+
+// Distance from the origin to the farther of two bounds.
+SUN_INLINE float farther(float lower, float upper, float origin) {
+  const float a = fabs(lower - origin), b = fabs(upper - origin);
+  return SUN_GREATER(a, b);
+}
+
+SUN_NAMESPACE_END
+#endif

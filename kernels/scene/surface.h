@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+// A hit becomes a surface: position, frames, texture coordinates, and the parameters of its material.
+#ifndef SUN_SCENE_SURFACE_H
+#define SUN_SCENE_SURFACE_H
+#include "bsdf/bsdf.h"
+#include "math/elementary.h"
+#include "scene/scene.h"
+
+SUN_NAMESPACE_BEGIN
+
+// LANES hits; lanes without one carry instance 0 and primitive 0, which exist whenever any lane has a hit.
+typedef struct HitLanes {
+  real t, u, v;
+  uint_n instance, primitive;
+  mask hit;
+} HitLanes;
+
+SUN_FN HitLanes load_hits(const SUN_GLOBAL Hit *hits, uint_n slots, mask active) {
+  HitLanes lanes;
+  GATHER_FLOAT(lanes.t, hits, slots, t);
+  GATHER_FLOAT(lanes.u, hits, slots, u);
+  GATHER_FLOAT(lanes.v, hits, slots, v);
+  GATHER_UINT(lanes.instance, hits, slots, instance);
+  GATHER_UINT(lanes.primitive, hits, slots, primitive);
+  lanes.hit = active & (lanes.instance != (uint_n)(SUN_NONE));
+  lanes.instance = lanes.hit ? lanes.instance : (uint_n)(0);
+  lanes.primitive = lanes.hit ? lanes.primitive : (uint_n)(0);
+  return lanes;
+}
+
+// The corners of LANES triangles, in world space.
+typedef struct Corners {
+  vec3 p[3];
+  uint_n vertex[3];
+  uint_n material;
+  uint_n flags;     // of the instance
+  mask moved;       // not the identity
+} Corners;
+
+SUN_FN vec3 instance_point(const Scene *scene, uint_n instance, vec3 p) {
+  real m[12];
+  for (int i = 0; i < 12; i++) GATHER_FLOAT(m[i], scene->instances, instance, to_world[i]);
+  return make_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7], m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
+}
+// Directions along the surface go by the matrix, normals by its inverse transposed, so that a mirrored front stays the front.
+SUN_FN vec3 instance_direction(const Scene *scene, uint_n instance, vec3 d) {
+  real m[12];
+  for (int i = 0; i < 12; i++) GATHER_FLOAT(m[i], scene->instances, instance, to_world[i]);
+  return make_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[4] * d.x + m[5] * d.y + m[6] * d.z, m[8] * d.x + m[9] * d.y + m[10] * d.z);
+}
+SUN_FN vec3 instance_normal(const Scene *scene, uint_n instance, vec3 n) {
+  real m[12];
+  for (int i = 0; i < 12; i++) GATHER_FLOAT(m[i], scene->instances, instance, to_object[i]);
+  return make_vec3(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z);
+}
+
+SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitive) {
+  Corners c;
+  GATHER_UINT(c.material, scene->triangles, primitive, material);
+  GATHER_UINT(c.flags, scene->instances, instance, flags);
+  c.moved = (c.flags & (uint_n)(SUN_INSTANCE_IDENTITY)) == (uint_n)(0);
+  for (int k = 0; k < 3; k++) {
+    GATHER_UINT(c.vertex[k], scene->triangles, primitive, vertex[k]);
+    GATHER_VEC3(c.p[k], scene->vertices, c.vertex[k], position);
+  }
+  if (ANY(c.moved))
+    for (int k = 0; k < 3; k++) c.p[k] = select3(c.moved, instance_point(scene, instance, c.p[k]), c.p[k]);
+  return c;
+}
+
+// Out of the front: counter-clockwise in mesh space. Not normalised: its length is twice the area.
+SUN_FN vec3 corners_normal(const Corners *c) {
+  vec3 n = cross3(sub3(c->p[1], c->p[0]), sub3(c->p[2], c->p[0]));
+  mask mirrored = (c->flags & (uint_n)(SUN_INSTANCE_MIRRORED)) != (uint_n)(0);
+  return select3(mirrored, negate3(n), n);
+}
+
+SUN_FN vec3 interpolate3(vec3 a, vec3 b, vec3 c, real u, real v) {
+  real w = 1.0f - u - v;
+  return add3(add3(scale3(a, w), scale3(b, u)), scale3(c, v));
+}
+SUN_FN real interpolate(real a, real b, real c, real u, real v) { return (1.0f - u - v) * a + u * b + v * c; }
+
+// A new ray starts this far along the normal: 2^-18 of the largest coordinate of the triangle, beyond the rounding of position and hit test
+// (a few 2^-24 of the same), so scale and place of a scene do not matter [Waechter19].
+SUN_FN real surface_offset(const Corners *c) {
+  real largest = (real)(0.0f);
+  for (int k = 0; k < 3; k++) {
+    largest = max_real(largest, fabs(c->p[k].x));
+    largest = max_real(largest, fabs(c->p[k].y));
+    largest = max_real(largest, fabs(c->p[k].z));
+  }
+  return largest * 3.81469727e-6f;
+}
+
+typedef struct Surface {
+  vec3 position;         // world
+  vec3 normal;           // geometric, unit length, on the ray's side
+  Frame3 shading;        // shading frame; its normal is on the ray's side too
+  real offset;           // of new rays, along `normal`
+  real area;             // of the triangle, world
+  real cos_front;        // cosine between the front's normal and the way back along the ray: negative from behind
+  mask front;            // seen from the front
+  real uv0[2], uv1[2];
+  real color[4];         // vertex colour and alpha
+  uint_n material;
+  uint_n material_flags;
+} Surface;
+
+#if SUN_TEXTURES
+// Texture coordinates and vertex colour at (u, v) of the triangle.
+SUN_FN void surface_coordinates(const Scene *scene, Surface *s, const Corners *c, real u, real v) {
+  real corner[3];
+  for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->vertices, c->vertex[k], u);
+  s->uv0[0] = interpolate(corner[0], corner[1], corner[2], u, v);
+  for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->vertices, c->vertex[k], v);
+  s->uv0[1] = interpolate(corner[0], corner[1], corner[2], u, v);
+  if (scene->frame->flags & SUN_FRAME_EXTRAS) {
+    for (int i = 0; i < 2; i++) {
+      for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->extras, c->vertex[k], uv1[i]);
+      s->uv1[i] = interpolate(corner[0], corner[1], corner[2], u, v);
+    }
+    for (int i = 0; i < 4; i++) {
+      for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->extras, c->vertex[k], color[i]);
+      s->color[i] = interpolate(corner[0], corner[1], corner[2], u, v);
+    }
+  }
+}
+#endif
+
+// wo: unit vector back along the ray.
+SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
+  Surface s;
+  Corners c = load_corners(scene, hit->instance, hit->primitive);
+  s.position = interpolate3(c.p[0], c.p[1], c.p[2], hit->u, hit->v);
+  vec3 n = corners_normal(&c);
+  real twice_area = sqrt(dot3(n, n));
+  s.area = 0.5f * twice_area;
+  vec3 front_normal = normalize3(n);
+  s.cos_front = dot3(front_normal, wo);
+  s.front = s.cos_front > 0.0f;
+  s.normal = select3(s.front, front_normal, negate3(front_normal));
+  s.offset = surface_offset(&c);
+  s.material = c.material;
+  GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
+
+  vec3 vertex_normal[3];
+  for (int k = 0; k < 3; k++) GATHER_VEC3(vertex_normal[k], scene->vertices, c.vertex[k], normal);
+  vec3 ns = interpolate3(vertex_normal[0], vertex_normal[1], vertex_normal[2], hit->u, hit->v);
+  if (ANY(c.moved)) ns = select3(c.moved, instance_normal(scene, hit->instance, ns), ns);
+  real length2 = dot3(ns, ns);
+  ns = select3(length2 > 1e-30f, normalize3(ns), front_normal);
+  // A shading normal belongs to the front; one that points behind it (bad input) gives way to the geometric one.
+  ns = select3(dot3(ns, front_normal) > 0.0f, ns, front_normal);
+  ns = select3(s.front, ns, negate3(ns));
+
+  for (int i = 0; i < 2; i++) s.uv0[i] = s.uv1[i] = (real)(0.0f);
+  for (int i = 0; i < 4; i++) s.color[i] = (real)(1.0f);
+  s.shading = frame_of_normal(ns);
+#if SUN_TEXTURES
+  surface_coordinates(scene, &s, &c, hit->u, hit->v);
+  if (scene->frame->flags & SUN_FRAME_EXTRAS) {
+    // The tangent frame of the normal map: interpolated, not made orthogonal again, as the map was baked [Mikkelsen08].
+    uint_n normal_slot;
+    GATHER_UINT(normal_slot, scene->materials, c.material, slot[SUN_SLOT_NORMAL]);
+    mask mapped = hit->hit & (normal_slot != (uint_n)(SUN_NONE));
+    if (ANY(mapped)) {
+      vec3 corner_tangent[3];
+      real handed;
+      for (int k = 0; k < 3; k++) GATHER_VEC3(corner_tangent[k], scene->extras, c.vertex[k], tangent);
+      GATHER_FLOAT(handed, scene->extras, c.vertex[0], tangent[3]);
+      vec3 tangent = interpolate3(corner_tangent[0], corner_tangent[1], corner_tangent[2], hit->u, hit->v);
+      if (ANY(c.moved)) tangent = select3(c.moved, instance_direction(scene, hit->instance, tangent), tangent);
+      mapped = mapped & (dot3(tangent, tangent) > 1e-30f);
+      tangent = normalize3(tangent);
+      vec3 front_ns = select3(s.front, ns, negate3(ns));
+      mask mirrored = (c.flags & (uint_n)(SUN_INSTANCE_MIRRORED)) != (uint_n)(0);
+      handed = mirrored ? -handed : handed;
+      vec3 bitangent = scale3(cross3(front_ns, tangent), handed);
+      Texel4 texel = sample_slot(&scene->pages, scene->textures, scene->texture_refs, scene->tables, normal_slot, s.uv0, s.uv1, mapped);
+      real scale;
+      GATHER_FLOAT(scale, scene->materials, c.material, normal_scale);
+      vec3 m = make_vec3((2.0f * texel.r - 1.0f) * scale, (2.0f * texel.g - 1.0f) * scale, 2.0f * texel.b - 1.0f);
+      vec3 bumped = add3(add3(scale3(tangent, m.x), scale3(bitangent, m.y)), scale3(front_ns, m.z));
+      mapped = mapped & (dot3(bumped, bumped) > 1e-12f);
+      bumped = normalize3(bumped);
+      bumped = select3(s.front, bumped, negate3(bumped));
+      ns = select3(mapped, bumped, ns);
+    }
+  }
+#endif
+  // Seen from behind its shading normal a surface would be black or leak: bend the normal until wo is just above it.
+  real below = dot3(ns, wo);
+  mask bend = below < 1e-3f;
+  if (ANY(bend)) {
+    vec3 bent = normalize3(add3(ns, scale3(wo, 1e-3f - below)));
+    ns = select3(bend, select3(dot3(bent, wo) > 0.0f, bent, s.normal), ns);
+  }
+  s.shading = frame_of_normal(ns);
+  return s;
+}
+
+// Where a ray to the side `direction` of the surface starts.
+SUN_FN vec3 surface_origin(const Surface *s, vec3 direction) {
+  real side = dot3(direction, s->normal) > 0.0f ? s->offset : -s->offset;
+  return add3(s->position, scale3(s->normal, side));
+}
+
+#if SUN_TEXTURES
+SUN_FN Texel4 material_texel(const Scene *scene, const Surface *s, uint slot, mask wanted) {
+  uint_n ref;
+  GATHER_UINT(ref, scene->materials, s->material, slot[slot]);
+  return sample_slot(&scene->pages, scene->textures, scene->texture_refs, scene->tables, ref, s->uv0, s->uv1, wanted);
+}
+#endif
+
+// Chance that the surface is there: 1 but for alpha cut-out and blend.
+SUN_FN real surface_alpha(const Scene *scene, const Surface *s, mask wanted) {
+  uint_n flags = s->material_flags;
+  mask uses = wanted & ((flags & (uint_n)(SUN_MATERIAL_ALPHA_MASK | SUN_MATERIAL_ALPHA_BLEND)) != (uint_n)(0));
+  real alpha = (real)(1.0f);
+  if (ANY(uses)) {
+    real value, cutoff;
+    GATHER_FLOAT(value, scene->materials, s->material, base_color[3]);
+    GATHER_FLOAT(cutoff, scene->materials, s->material, alpha_cutoff);
+    value = value * s->color[3];
+#if SUN_TEXTURES
+    value = value * material_texel(scene, s, SUN_SLOT_BASE_COLOR, uses).a * material_texel(scene, s, SUN_SLOT_ALPHA, uses).r;
+#endif
+    mask cut = (flags & (uint_n)(SUN_MATERIAL_ALPHA_MASK)) != (uint_n)(0);
+    value = cut ? (value >= cutoff ? (real)(1.0f) : (real)(0.0f)) : value;
+    alpha = uses ? clamp_real(value, (real)(0.0f), (real)(1.0f)) : alpha;
+  }
+  return alpha;
+}
+
+SUN_FN vec3 surface_emission(const Scene *scene, const Surface *s, mask wanted) {
+  vec3 emission = splat3((real)(0.0f));
+  mask emits = wanted & ((s->material_flags & (uint_n)(SUN_MATERIAL_EMISSIVE)) != (uint_n)(0)) &
+               (s->front | ((s->material_flags & (uint_n)(SUN_MATERIAL_DOUBLE_SIDED)) != (uint_n)(0)));
+  if (ANY(emits)) {
+    vec3 value;
+    GATHER_VEC3(value, scene->materials, s->material, emission);
+#if SUN_TEXTURES
+    Texel4 texel = material_texel(scene, s, SUN_SLOT_EMISSION, emits);
+    value = mul3(value, make_vec3(texel.r, texel.g, texel.b));
+    // Unlit surfaces show their base colour, vertex colours included.
+    mask unlit = (s->material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
+    value = select3(unlit, mul3(value, make_vec3(s->color[0], s->color[1], s->color[2])), value);
+#endif
+    emission = select3(emits, value, emission);
+  }
+  return emission;
+}
+
+// The bsdf's parameters, textures looked up.
+SUN_FN Bsdf surface_bsdf(const Scene *scene, const Surface *s, mask wanted) {
+  Bsdf b;
+  GATHER_VEC3(b.base, scene->materials, s->material, base_color);
+#if SUN_TEXTURES
+  mask textured = wanted & ((s->material_flags & (uint_n)(SUN_MATERIAL_TEXTURED)) != (uint_n)(0));
+  b.base = mul3(b.base, make_vec3(s->color[0], s->color[1], s->color[2]));
+  if (ANY(textured)) {
+    Texel4 texel = material_texel(scene, s, SUN_SLOT_BASE_COLOR, textured);
+    b.base = mul3(b.base, make_vec3(texel.r, texel.g, texel.b));
+  }
+#endif
+  b.base = make_vec3(clamp_real(b.base.x, (real)(0.0f), (real)(1.0f)), clamp_real(b.base.y, (real)(0.0f), (real)(1.0f)), clamp_real(b.base.z, (real)(0.0f), (real)(1.0f)));
+  b.specular = wanted & ((s->material_flags & (uint_n)(SUN_MATERIAL_SPECULAR)) != (uint_n)(0));
+  b.metallic = b.transmission = b.f90 = (real)(0.0f);
+  b.alpha = b.eta = (real)(1.0f);
+  b.f0 = splat3((real)(0.0f));
+  b.solid = wanted & ((s->material_flags & (uint_n)(SUN_MATERIAL_VOLUME)) != (uint_n)(0));
+  b.inside = b.solid & !s->front;
+#if SUN_SPECULAR
+  if (ANY(b.specular)) {
+    real roughness, ior;
+    GATHER_FLOAT(b.metallic, scene->materials, s->material, metallic);
+    GATHER_FLOAT(roughness, scene->materials, s->material, roughness);
+    GATHER_FLOAT(b.transmission, scene->materials, s->material, transmission);
+    GATHER_FLOAT(ior, scene->materials, s->material, ior);
+    GATHER_VEC3(b.f0, scene->materials, s->material, f0);
+    GATHER_FLOAT(b.f90, scene->materials, s->material, f90);
+#if SUN_TEXTURES
+    if (ANY(textured)) {
+      Texel4 texel = material_texel(scene, s, SUN_SLOT_METALLIC_ROUGHNESS, textured);
+      roughness = roughness * texel.g;
+      b.metallic = b.metallic * texel.b;
+      b.transmission = b.transmission * material_texel(scene, s, SUN_SLOT_TRANSMISSION, textured).r;
+      real specular = material_texel(scene, s, SUN_SLOT_SPECULAR, textured).a;
+      texel = material_texel(scene, s, SUN_SLOT_SPECULAR_COLOR, textured);
+      b.f90 = b.f90 * specular;
+      b.f0 = mul3(scale3(b.f0, specular), make_vec3(texel.r, texel.g, texel.b));
+    }
+#endif
+    b.alpha = roughness * roughness;
+    b.eta = b.inside ? 1.0f / ior : ior;
+  }
+#endif
+  return b;
+}
+
+// What is left of light after `distance` within the solid that the ray leaves here (Beer's law); 1 where it comes from outside.
+SUN_FN vec3 surface_absorption(const Scene *scene, const Surface *s, real distance, mask wanted) {
+  vec3 left = splat3((real)(1.0f));
+  mask within = wanted & !s->front & ((s->material_flags & (uint_n)(SUN_MATERIAL_VOLUME)) != (uint_n)(0));
+  if (ANY(within)) {
+    vec3 a;
+    GATHER_VEC3(a, scene->materials, s->material, absorption);
+    vec3 passed = make_vec3(exp_real(-a.x * distance), exp_real(-a.y * distance), exp_real(-a.z * distance));
+    left = select3(within, passed, left);
+  }
+  return left;
+}
+
+SUN_NAMESPACE_END
+#endif

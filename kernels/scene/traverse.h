@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two questions of a ray, over the layout that SUN_LAYOUT names: the nearest hit, and whether there is any.
+#ifndef SUN_SCENE_TRAVERSE_H
+#define SUN_SCENE_TRAVERSE_H
+#include "scene/triangle.h"  // here, not within a branch: the embedding puts each file in place once, where it is first asked for
+#if SUN_LAYOUT == SUN_LAYOUT_BINARY
+#include "scene/traverse_binary.h"
+#else
+#include "scene/traverse_wide.h"
+#endif
+
+// Kernels that trace: explicit vectors, from which a vectorizer has to keep its hands off (Intel's scalarizes them otherwise), or scalar code.
+#if SUN_LAYOUT == SUN_LAYOUT_BINARY
+#define SUN_TRACE_KERNEL SUN_KERNEL
+#else
+#define SUN_TRACE_KERNEL __kernel __attribute__((vec_type_hint(float16)))
+#endif
+
+SUN_NAMESPACE_BEGIN
+
+// Buffers of a Tree, as the layout reads them.
+SUN_INLINE TraceScene make_trace_scene(const SUN_GLOBAL uchar *nodes, const SUN_GLOBAL uchar *leaves, const SUN_GLOBAL uint *instance_list,
+                                   const SUN_GLOBAL uint *roots, const SUN_GLOBAL Instance *instances, uint top_root, uint instance_count) {
+  TraceScene scene;
+  scene.nodes = (const SUN_GLOBAL TraceNode *)nodes;
+  scene.leaves = (const SUN_GLOBAL TraceLeaf *)leaves;
+  scene.instance_list = instance_list;
+  scene.roots = roots;
+  scene.instances = instances;
+  scene.top_root = top_root;
+  scene.instance_count = instance_count;
+  return scene;
+}
+
+SUN_INLINE Search begin_search(const Ray *ray, uint want) {
+  Search search;
+  search.want = want;
+  search.passed_t = ray->passed_t > 0.0f ? ray->passed_t : 0.0f;
+  search.passed_instance = ray->passed_instance;
+  search.passed_primitive = ray->passed_primitive;
+  search.best_t = ray->t_max;
+  search.best_instance = 0;
+  search.best_primitive = 0;
+  search.found_instance = SUN_NONE;
+  search.u = 0.0f;
+  search.v = 0.0f;
+  return search;
+}
+
+SUN_INLINE int prepare_world_ray(PreparedRay *world, const TraceScene *scene, const Ray *ray) {
+  float lower[3], upper[3], reach[3];
+  if (scene->instance_count == 1) {
+    for (int axis = 0; axis < 3; axis++) {
+      lower[axis] = scene->instances[0].lower[axis];
+      upper[axis] = scene->instances[0].upper[axis];
+    }
+  } else {
+    top_bounds(scene, lower, upper);
+  }
+  for (int axis = 0; axis < 3; axis++) reach[axis] = farther(lower[axis], upper[axis], ray->origin[axis]);
+  return prepare_ray(world, ray->origin, ray->direction, reach);
+}
+
+// Carries the ray into an instance's space; t stays the same, so the direction is not normalised. False where the instance cannot be hit.
+SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *ray, const PreparedRay *world, const Search *search, PreparedRay *inside,
+                          Place *place) {
+  const SUN_GLOBAL Instance *instance = &scene->instances[number];
+  place->instance = number;
+  place->mirrored = (instance->flags & SUN_INSTANCE_MIRRORED) != 0;
+  const uint passed = search->passed_primitive;
+  place->first_primitive = number > search->passed_instance ? 0 : number < search->passed_instance || passed >= SUN_ID_PRIMITIVE ? SUN_NONE : passed + 1;
+  if (instance->flags & SUN_INSTANCE_IDENTITY) {
+    place->world.near = 0.0f;
+    place->world.far = SUN_INFINITY;
+    place->from = search->passed_t;
+    *inside = *world;
+    return 1;
+  }
+  place->world = box_interval(world, instance->lower[0], instance->lower[1], instance->lower[2], instance->upper[0], instance->upper[1], instance->upper[2], 0.0f);
+  // A triangle nearer than the world box is pulled back into it, perhaps to behind what the ray passed; one that is not pulled keeps its own t.
+  place->from = search->passed_t > place->world.near ? search->passed_t : 0.0f;
+  if (!(place->world.near <= place->world.far)) return 0;
+  float origin[3], direction[3], reach[3], world_reach[3];
+  for (int axis = 0; axis < 3; axis++) world_reach[axis] = farther(instance->lower[axis], instance->upper[axis], ray->origin[axis]);
+  for (int row = 0; row < 3; row++) {
+    const float a = instance->to_object[4 * row], b = instance->to_object[4 * row + 1], c = instance->to_object[4 * row + 2];
+    origin[row] = fma(a, ray->origin[0], fma(b, ray->origin[1], fma(c, ray->origin[2], instance->to_object[4 * row + 3])));
+    direction[row] = fma(a, ray->direction[0], fma(b, ray->direction[1], c * ray->direction[2]));
+    // The mesh lies within its instance's world box, but for the rounding of both matrices.
+    reach[row] = 1.0001f * fma(fabs(a), world_reach[0], fma(fabs(b), world_reach[1], fabs(c) * world_reach[2]));
+  }
+  return prepare_ray(inside, origin, direction, reach);
+}
+
+// Searches instance after instance, nearest first: only the first where there is one alone. True where `any` and something counted.
+SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *search, int any_one) {
+  PreparedRay world;
+  if (scene->instance_count == 0 || !prepare_world_ray(&world, scene, ray)) return 0;
+  const int alone = scene->instance_count == 1;
+  InstanceWalk walk;
+  begin_instances(scene, &walk);
+  uint number = alone ? 0 : next_instance(scene, &world, search->passed_t, search->best_t, &walk);
+  while (number != SUN_NONE) {
+    PreparedRay inside;
+    Place place;
+    if (enter_instance(scene, number, ray, &world, search, &inside, &place)) {
+      if (search_mesh(scene, scene->roots[number], &inside, &place, search, any_one)) return 1;
+    }
+    number = alone ? SUN_NONE : next_instance(scene, &world, search->passed_t, search->best_t, &walk);
+  }
+  return 0;
+}
+
+// The nearest hit: the smallest (t, instance, primitive). Its instance is SUN_NONE, and its t the ray's t_max, where there is none.
+SUN_INLINE Hit closest_hit(const TraceScene *scene, Ray ray, uint want) {
+  Search search = begin_search(&ray, want);
+  search_scene(scene, &ray, &search, 0);
+  Hit hit;
+  hit.t = search.best_t;
+  hit.u = search.u < 1.0f ? search.u : 1.0f;  // rounding may carry them out of the triangle
+  const float rest = 1.0f - hit.u;
+  hit.v = search.v < rest ? search.v : rest;
+  hit.instance = search.found_instance;
+  hit.primitive = search.found_instance == SUN_NONE ? SUN_NONE : search.best_primitive;
+  hit.pad[0] = hit.pad[1] = hit.pad[2] = 0;
+  return hit;
+}
+
+SUN_INLINE int any_hit(const TraceScene *scene, Ray ray, uint want) {
+  Search search = begin_search(&ray, want);
+  return search_scene(scene, &ray, &search, 1);
+}
+
+SUN_NAMESPACE_END
+#endif

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The binary layout: scalar, one box test a child. For GPUs and narrow machines, for the host (compiled as C++), and as the reference of the others.
+#ifndef SUN_SCENE_TRAVERSE_BINARY_H
+#define SUN_SCENE_TRAVERSE_BINARY_H
+#include "scene/triangle.h"
+
+SUN_NAMESPACE_BEGIN
+
+typedef BinaryNode TraceNode;
+
+typedef struct TraceScene {
+  const SUN_GLOBAL TraceNode *nodes;
+  const SUN_GLOBAL TraceLeaf *leaves;
+  const SUN_GLOBAL uint *instance_list;
+  const SUN_GLOBAL uint *roots;
+  const SUN_GLOBAL Instance *instances;
+  uint top_root;
+  uint instance_count;
+} TraceScene;
+
+// A node that waits: its box's near t in the upper half (t >= 0, so integers sort like floats), its number in the lower one.
+SUN_INLINE ulong waiting(float t, uint node) { return ((ulong)as_uint(t) << 32) | node; }
+SUN_INLINE float waiting_t(ulong entry) { return as_float((uint)(entry >> 32)); }
+
+typedef struct NodeStack {
+  ulong entry[SUN_BINARY_STACK];
+  int size;
+} NodeStack;
+
+// Tests the two children of an inner node: the nearer that is hit, or SUN_NONE; the other one, if hit too, waits on the stack.
+SUN_INLINE uint open_node(const TraceScene *scene, uint first, const PreparedRay *ray, float from, float limit, NodeStack *stack) {
+  const BinaryNode a = scene->nodes[first], b = scene->nodes[first + 1];
+  const Interval ta = box_interval(ray, a.lower[0], a.lower[1], a.lower[2], a.upper[0], a.upper[1], a.upper[2], from);
+  const Interval tb = box_interval(ray, b.lower[0], b.lower[1], b.lower[2], b.upper[0], b.upper[1], b.upper[2], from);
+  const int hit_a = ta.near <= ta.far && ta.near <= limit, hit_b = tb.near <= tb.far && tb.near <= limit;
+  if (hit_a && hit_b) {
+    const int swap = tb.near < ta.near;
+    stack->entry[stack->size++] = swap ? waiting(ta.near, first) : waiting(tb.near, first + 1);
+    return swap ? first + 1 : first;
+  }
+  return hit_a ? first : hit_b ? first + 1 : SUN_NONE;
+}
+
+// The next node that waits and is not beyond `limit`, or SUN_NONE.
+SUN_INLINE uint pop_node(NodeStack *stack, float limit) {
+  while (stack->size > 0) {
+    const ulong entry = stack->entry[--stack->size];
+    if (waiting_t(entry) <= limit) return (uint)entry;
+  }
+  return SUN_NONE;
+}
+
+// The mesh below `root`: takes the nearest hit that counts. With `any` the first that is found; true if there is one.
+SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay *ray, const Place *place, Search *search, int any) {
+  NodeStack stack;
+  stack.size = 0;
+  uint current = root;
+  while (current != SUN_NONE) {
+    const uint first = scene->nodes[current].first, count = scene->nodes[current].count;
+    if (count == 0) {
+      current = open_node(scene, first, ray, place->from, box_limit(place, search), &stack);
+      if (current != SUN_NONE) continue;
+    }
+    for (uint i = first; i < first + count; i++) {
+      const SUN_GLOBAL LeafTriangle *leaf = &scene->leaves[i];
+      Pierced pierced;
+      float t, u, v;
+      if (!pierce(leaf, ray, &pierced)) continue;
+      if (!counts(leaf, ray, place, search, &pierced, 1, &t, &u, &v)) continue;
+      if (any) return 1;
+      take_hit(search, place, t, u, v, leaf->id & SUN_ID_PRIMITIVE);
+    }
+    current = pop_node(&stack, box_limit(place, search));
+  }
+  return 0;
+}
+
+// The walk over the top tree; its leaves hold runs of the instance list.
+typedef struct InstanceWalk {
+  NodeStack stack;
+  uint next, end;  // what is left of the current leaf
+} InstanceWalk;
+
+SUN_INLINE void begin_instances(const TraceScene *scene, InstanceWalk *walk) {
+  walk->stack.size = 1;
+  walk->stack.entry[0] = waiting(0.0f, scene->top_root);
+  walk->next = walk->end = 0;
+}
+
+SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, float from, float limit, InstanceWalk *walk) {
+  while (walk->next == walk->end) {
+    uint current = pop_node(&walk->stack, limit);
+    while (current != SUN_NONE && scene->nodes[current].count == 0) current = open_node(scene, scene->nodes[current].first, ray, from, limit, &walk->stack);
+    if (current == SUN_NONE) {
+      if (walk->stack.size == 0) return SUN_NONE;
+      continue;
+    }
+    walk->next = scene->nodes[current].first;
+    walk->end = walk->next + scene->nodes[current].count;
+  }
+  return scene->instance_list[walk->next++];
+}
+
+// The box around all instances, where there are several.
+SUN_INLINE void top_bounds(const TraceScene *scene, float *lower, float *upper) {
+  const BinaryNode root = scene->nodes[scene->top_root];
+  for (int axis = 0; axis < 3; axis++) {
+    lower[axis] = root.lower[axis];
+    upper[axis] = root.upper[axis];
+  }
+}
+
+SUN_NAMESPACE_END
+#endif

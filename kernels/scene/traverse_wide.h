@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// The wide layouts for CPUs: explicit vectors over the 8 or 16 children of a node and the 8 triangles of a pack, one ray per work-item.
+#ifndef SUN_SCENE_TRAVERSE_WIDE_H
+#define SUN_SCENE_TRAVERSE_WIDE_H
+#include "scene/triangle.h"
+
+#if SUN_LAYOUT == SUN_LAYOUT_WIDE16
+#define SUN_WIDTH 16
+typedef Wide16Node TraceNode;
+typedef float16 node_float;
+typedef int16 node_int;
+#define NODE_PLANE(node, k) vload16(0, (node)->plane[k])
+#define NODE_STORE(v, array) vstore16((v), 0, (array))
+#else
+#define SUN_WIDTH 8
+typedef Wide8Node TraceNode;
+typedef float8 node_float;
+typedef int8 node_int;
+#define NODE_PLANE(node, k) vload8(0, (node)->plane[k])
+#define NODE_STORE(v, array) vstore8((v), 0, (array))
+#endif
+
+typedef struct TraceScene {
+  const SUN_GLOBAL TraceNode *nodes;
+  const SUN_GLOBAL TraceLeaf *leaves;
+  const SUN_GLOBAL uint *instance_list;
+  const SUN_GLOBAL uint *roots;
+  const SUN_GLOBAL Instance *instances;
+  uint top_root;
+  uint instance_count;
+} TraceScene;
+
+// Lanes of a comparison as bytes of 64-bit words, eight lanes a word: a portable road from a vector mask to its set lanes.
+#define LANE_BYTES 0x0101010101010101ul
+SUN_INLINE int lowest_byte(ulong bytes) { return (int)((63ul - clz(bytes & (~bytes + 1ul))) >> 3); }
+SUN_INLINE ulong bytes_of8(int8 m) { return as_ulong(convert_char8(m)) & LANE_BYTES; }
+typedef struct LaneSet { ulong low, high; } LaneSet;
+#if SUN_WIDTH == 16
+SUN_INLINE LaneSet lanes_of(int16 m) {
+  const ulong2 words = as_ulong2(convert_char16(m)) & LANE_BYTES;
+  LaneSet set;
+  set.low = words.s0;
+  set.high = words.s1;
+  return set;
+}
+SUN_INLINE float least_of(float16 a) { const float8 b = SUN_LESSER(a.lo, a.hi); const float4 c = SUN_LESSER(b.lo, b.hi); const float2 d = SUN_LESSER(c.lo, c.hi); return SUN_LESSER(d.x, d.y); }
+SUN_INLINE float greatest_of(float16 a) { return -least_of(-a); }
+#else
+SUN_INLINE LaneSet lanes_of(int8 m) {
+  LaneSet set;
+  set.low = bytes_of8(m);
+  set.high = 0;
+  return set;
+}
+SUN_INLINE float least_of(float8 b) { const float4 c = SUN_LESSER(b.lo, b.hi); const float2 d = SUN_LESSER(c.lo, c.hi); return SUN_LESSER(d.x, d.y); }
+SUN_INLINE float greatest_of(float8 a) { return -least_of(-a); }
+#endif
+SUN_INLINE float least_of8(float8 b) { const float4 c = SUN_LESSER(b.lo, b.hi); const float2 d = SUN_LESSER(c.lo, c.hi); return SUN_LESSER(d.x, d.y); }
+SUN_INLINE uint least_id8(uint8 a) { const uint4 b = min(a.lo, a.hi); const uint2 c = min(b.lo, b.hi); return min(c.x, c.y); }
+
+// Takes the lowest lane out of a set that is not empty, into `lane`. (A macro, and not a function of &set: that one went through memory.)
+#define TAKE_LANE(set, lane)                  \
+  if ((set).low) {                            \
+    (lane) = lowest_byte((set).low);          \
+    (set).low &= (set).low - 1;               \
+  } else {                                    \
+    (lane) = 8 + lowest_byte((set).high);     \
+    (set).high &= (set).high - 1;             \
+  }
+#define SOME_LANE(set) ((set).low | (set).high)
+
+// A child that waits: its box's near t in the upper half (t >= 0, so integers sort like floats), its reference in the lower one.
+typedef struct ChildStack {
+  ulong entry[SUN_WIDE_STACK];
+  int size;
+} ChildStack;
+
+// Children whose boxes the ray meets between `from` and `limit`.
+SUN_INLINE LaneSet children_hit(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, node_float *near) {
+  const int x = ray->negative[0], y = ray->negative[1], z = ray->negative[2];
+  const node_float rx = (node_float)(ray->reciprocal[0]), ry = (node_float)(ray->reciprocal[1]), rz = (node_float)(ray->reciprocal[2]);
+  const node_float nx = fma(NODE_PLANE(node, x), rx, (node_float)(ray->near_offset[0]));
+  const node_float ny = fma(NODE_PLANE(node, 2 + y), ry, (node_float)(ray->near_offset[1]));
+  const node_float nz = fma(NODE_PLANE(node, 4 + z), rz, (node_float)(ray->near_offset[2]));
+  const node_float fx = fma(NODE_PLANE(node, 1 - x), rx, (node_float)(ray->far_offset[0]));
+  const node_float fy = fma(NODE_PLANE(node, 3 - y), ry, (node_float)(ray->far_offset[1]));
+  const node_float fz = fma(NODE_PLANE(node, 5 - z), rz, (node_float)(ray->far_offset[2]));
+  const node_float first = (node_float)(from), last = (node_float)(limit);
+  const node_float nxy = SUN_GREATER(nx, ny), nz1 = SUN_GREATER(nz, first), fxy = SUN_LESSER(fx, fy), fz1 = SUN_LESSER(fz, last);
+  *near = SUN_GREATER(nxy, nz1);
+  const node_float far = SUN_LESSER(fxy, fz1);
+  const node_int hit = *near <= far;
+  return lanes_of(hit);
+}
+
+// The nearest child that is hit, or SUN_NONE; the others wait on the stack, the farthest deepest.
+SUN_INLINE uint open_node(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, ChildStack *stack) {
+  node_float near;
+  LaneSet hit = children_hit(node, ray, from, limit, &near);
+  if (!SOME_LANE(hit)) return SUN_NONE;
+  float t[SUN_WIDTH];
+  NODE_STORE(near, t);
+  const int base = stack->size;
+  int lane;
+  TAKE_LANE(hit, lane)
+  ulong nearest = ((ulong)as_uint(t[lane]) << 32) | node->child[lane];
+  while (SOME_LANE(hit)) {
+    TAKE_LANE(hit, lane)
+    const ulong entry = ((ulong)as_uint(t[lane]) << 32) | node->child[lane];
+    const ulong farther_one = max(entry, nearest);
+    nearest = min(entry, nearest);
+    int at = stack->size++;
+    while (at > base && stack->entry[at - 1] < farther_one) {
+      stack->entry[at] = stack->entry[at - 1];
+      at--;
+    }
+    stack->entry[at] = farther_one;
+  }
+  return (uint)nearest;
+}
+
+// The same where order does not matter.
+SUN_INLINE uint open_node_unsorted(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, ChildStack *stack) {
+  node_float near;
+  LaneSet hit = children_hit(node, ray, from, limit, &near);
+  if (!SOME_LANE(hit)) return SUN_NONE;
+  int lane;
+  TAKE_LANE(hit, lane)
+  const uint first = node->child[lane];
+  while (SOME_LANE(hit)) {
+    TAKE_LANE(hit, lane)
+    stack->entry[stack->size++] = node->child[lane];
+  }
+  return first;
+}
+
+// The next child that waits and is not beyond `limit`, or SUN_NONE.
+SUN_INLINE uint pop_child(ChildStack *stack, float limit) {
+  while (stack->size > 0) {
+    const ulong entry = stack->entry[--stack->size];
+    if (as_float((uint)(entry >> 32)) <= limit) return (uint)entry;
+  }
+  return SUN_NONE;
+}
+
+// The mesh below `root`: takes the nearest hit that counts. With `any` the first that is found; true if there is one.
+SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay *ray, const Place *place, Search *search, int any_one) {
+  ChildStack stack;
+  stack.size = 0;
+  uint current = root;
+  float limit = box_limit(place, search);
+  while (current != SUN_NONE) {
+    if (!(current & SUN_WIDE_LEAF)) {
+      const SUN_GLOBAL TraceNode *node = &scene->nodes[current];
+      current = any_one ? open_node_unsorted(node, ray, place->from, limit, &stack) : open_node(node, ray, place->from, limit, &stack);
+      if (current != SUN_NONE) continue;
+    } else {
+      const SUN_GLOBAL WidePack *pack = &scene->leaves[current & ~SUN_WIDE_LEAF];
+      Pierced p;
+      const int8 pierced = pierce(pack, ray, &p);
+      if (TRI_ANY(pierced)) {
+        float8 t, u, v;
+        const int8 ok = counts(pack, ray, place, search, &p, pierced, &t, &u, &v);
+        if (TRI_ANY(ok)) {
+          if (any_one) return 1;
+          t = ok ? t : (float8)(SUN_INFINITY);
+          const float best = least_of8(t);
+          const int8 nearest = ok & (t == best);
+          const uint8 id = nearest ? vload8(0, pack->id) & SUN_ID_PRIMITIVE : (uint8)(SUN_NONE);
+          const uint primitive = least_id8(id);
+          const int lane = lowest_byte(bytes_of8(id == primitive));
+          float us[8], vs[8];
+          vstore8(u, 0, us);
+          vstore8(v, 0, vs);
+          take_hit(search, place, best, us[lane], vs[lane], primitive);
+          limit = box_limit(place, search);
+        }
+      }
+    }
+    current = pop_child(&stack, limit);
+  }
+  return 0;
+}
+
+// The walk over the top tree; its leaves name instances.
+typedef struct InstanceWalk { ChildStack stack; } InstanceWalk;
+
+SUN_INLINE void begin_instances(const TraceScene *scene, InstanceWalk *walk) {
+  walk->stack.size = 1;
+  walk->stack.entry[0] = scene->top_root;
+}
+
+SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, float from, float limit, InstanceWalk *walk) {
+  uint current = pop_child(&walk->stack, limit);
+  while (!(current & SUN_WIDE_LEAF)) {
+    current = open_node(&scene->nodes[current], ray, from, limit, &walk->stack);
+    if (current == SUN_NONE) current = pop_child(&walk->stack, limit);
+  }
+  return current == SUN_NONE ? SUN_NONE : current & ~SUN_WIDE_LEAF;
+}
+
+// The box around all instances, where there are several.
+SUN_INLINE void top_bounds(const TraceScene *scene, float *lower, float *upper) {
+  const SUN_GLOBAL TraceNode *root = &scene->nodes[scene->top_root];
+  for (int axis = 0; axis < 3; axis++) {
+    lower[axis] = least_of(NODE_PLANE(root, 2 * axis));
+    upper[axis] = greatest_of(NODE_PLANE(root, 2 * axis + 1));
+  }
+}
+
+#endif

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// occlude: shadow rays -> what of their contribution arrives -> film. One ray a work-item; LANES is 1 here.
+//   reads    shadow rays; the tree; materials of what a ray may pass
+//   writes   film
+//   queues   shadow_rays
+//   holds    transmittance is multiplied nearest first, so its bits do not depend on the tree
+#include "path/contribute.h"
+#include "scene/surface.h"
+#include "scene/traverse.h"
+
+SUN_TRACE_KERNEL void occlude(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uchar *nodes, const SUN_GLOBAL uchar *leaves,
+                              const SUN_GLOBAL uint *instance_list, const SUN_GLOBAL uint *roots, uint top_root, const SUN_GLOBAL Vertex *vertices,
+                              const SUN_GLOBAL VertexExtra *extras, const SUN_GLOBAL Triangle *triangles, const SUN_GLOBAL Instance *instances,
+                              const SUN_GLOBAL uint *records, const SUN_GLOBAL uint *page0, const SUN_GLOBAL uint *page1, const SUN_GLOBAL uint *page2,
+                              const SUN_GLOBAL uint *page3, const SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *queue,
+                              FilmCounts counts, FilmWords film_words) {
+  uint position = (uint)get_global_id(0);
+  if (position >= counts[SUN_COUNT_SHADOW]) return;
+  const SUN_GLOBAL ShadowRay *shadow = shadow_rays + queue[position];
+  TraceScene tree = make_trace_scene(nodes, leaves, instance_list, roots, instances, top_root, frame->instance_count);
+  Ray ray;
+  for (int axis = 0; axis < 3; axis++) {
+    ray.origin[axis] = shadow->origin[axis];
+    ray.direction[axis] = shadow->direction[axis];
+  }
+  ray.t_max = shadow->t_max;
+  ray.passed_t = 0.0f;
+  ray.passed_instance = ray.passed_primitive = SUN_NONE;
+  if (any_hit(&tree, ray, SUN_WANT_OPAQUE)) return;
+  vec3 worth = make_vec3(shadow->contribution[0], shadow->contribution[1], shadow->contribution[2]);
+#if SUN_PASSABLE
+  Scene scene = open_scene(frame, vertices, extras, triangles, instances, records, page0, page1, page2, page3);
+  vec3 wo = normalize3(make_vec3(-ray.direction[0], -ray.direction[1], -ray.direction[2]));
+  for (;;) {
+    Hit hit = closest_hit(&tree, ray, SUN_WANT_PASSABLE);
+    if (hit.instance == SUN_NONE) break;
+    HitLanes lane = {hit.t, hit.u, hit.v, hit.instance, hit.primitive, 1};
+    Surface surface = make_surface(&scene, &lane, wo);
+    float alpha = surface_alpha(&scene, &surface, 1);
+    if (alpha > 0.0f) {
+      Bsdf bsdf = surface_bsdf(&scene, &surface, 1);
+      vec3 straight = bsdf_straight(&bsdf, to_local(&surface.shading, wo));
+      if (surface.material_flags & SUN_MATERIAL_UNLIT) straight = splat3(0.0f);
+      worth = mul3(worth, lerp3(splat3(1.0f), straight, alpha));
+      if (max_of3(make_vec3(fabs(worth.x), fabs(worth.y), fabs(worth.z))) == 0.0f) return;
+    }
+    ray.passed_t = hit.t;
+    ray.passed_instance = hit.instance;
+    ray.passed_primitive = hit.primitive;
+  }
+#endif
+  FilmView film = open_film(frame, film_words, counts);
+  film_contribute(frame, &film, shadow->pixel, shadow->sample, SUN_FILM_KEY_DIRECT(shadow->vertex), shadow->depth, worth.x, worth.y, worth.z);
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// roulette: ends dim paths without bias.
+//   reads    throughput, pixel, sample, vertex; status
+//   writes   throughput; status
+//   queues   rays -> rays (by the alive bit of the status)
+//   holds    the expected throughput of a path is what it was
+//   source   [Arvo90]
+#include "math/sampler.h"
+#include "path/path.h"
+#include "path/queue.h"
+#include "shared/frame.h"
+
+#define SUN_ROULETTE_LEAST 0.05f  // chance to survive, at the dimmest
+
+SUN_KERNEL void roulette(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *rays,
+                         const SUN_GLOBAL uint *counts) {
+  uint first = (uint)get_global_id(0) * LANES, length = counts[SUN_COUNT_LIVE];
+  if (first >= length) return;
+  QueueLanes lanes = queue_lanes(rays, first, length);
+  uint_n word = gather_uint(status, lanes.slot);
+  uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
+  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0)) & (depth >= (uint_n)(frame->roulette_depth));
+  if (!ANY(active)) return;
+  Paths paths;
+  paths.words = path_words;
+  paths.pool = frame->pool;
+  Path path = path_load(&paths, lanes.slot);
+  real brightest = max_real(max_real(fabs(path.throughput_r), fabs(path.throughput_g)), fabs(path.throughput_b));
+  active = active & (brightest < 1.0f);
+  if (!ANY(active)) return;
+  real survival = max_real(brightest, (real)(SUN_ROULETTE_LEAST));
+  uint_n y = path.pixel / (uint_n)(frame->tile_width);
+  uint_n x = path.pixel - y * (uint_n)(frame->tile_width);
+  SamplerKey key = sampler_key(frame->seed, x + (uint_n)(frame->tile_x0), y + (uint_n)(frame->tile_y0), path.sample, frame->sampler);
+  // Of the vertex that shade has just left.
+  real u = sample_2d(&key, SUN_DIM_EMITTER(path.vertex - (uint_n)(1))).y;
+  mask dies = active & (u >= survival);
+  mask lives = active & !dies;
+  path.throughput_r = path.throughput_r / survival;
+  path.throughput_g = path.throughput_g / survival;
+  path.throughput_b = path.throughput_b / survival;
+  path_store(&paths, lanes.slot, lives, &path);
+  uint_n ended = (word & (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_SHADOW | SUN_STATUS_FIRST_HIT)) |
+                 (uint_n)(SUN_STATUS_ENDED | (SUN_ENDED_ABSORBED << SUN_STATUS_ENDED_SHIFT));
+  store_uint(status, lanes.slot, dies, ended);
+}

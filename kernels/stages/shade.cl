@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// shade: what a hit adds to the film, and where its path goes next.
+//   reads    hits; every column of the path; status
+//   writes   film; every column of the path; status; a shadow ray where SUN_FRAME_DIRECT is set
+//   queues   rays -> rays, shadow_rays (by bits of the status; compact makes the queues)
+//   holds    afterwards a path is alive with a ray to trace, or has ended with a reason, never both
+//   source   [Kajiya86 eq. 1], weights [Veach97 9.2]
+#include "path/contribute.h"
+#include "path/path.h"
+#include "path/queue.h"
+#include "transport/direct.h"
+#include "transport/emission.h"
+#include "transport/scatter.h"
+
+SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, const DirectSample *direct, vec3 worth, const Path *path, uint_n depth) {
+  uint slot[LANES], word[14][LANES];
+  int on[LANES];
+  LANES_STORE(slots, slot);
+  LANES_STORE(direct->valid, on);
+  LANES_STORE(bits_of_real(direct->origin.x), word[0]);
+  LANES_STORE(bits_of_real(direct->origin.y), word[1]);
+  LANES_STORE(bits_of_real(direct->origin.z), word[2]);
+  LANES_STORE(bits_of_real(direct->t_max), word[3]);
+  LANES_STORE(bits_of_real(direct->direction.x), word[4]);
+  LANES_STORE(bits_of_real(direct->direction.y), word[5]);
+  LANES_STORE(bits_of_real(direct->direction.z), word[6]);
+  LANES_STORE(path->pixel, word[7]);
+  LANES_STORE(bits_of_real(worth.x), word[8]);
+  LANES_STORE(bits_of_real(worth.y), word[9]);
+  LANES_STORE(bits_of_real(worth.z), word[10]);
+  LANES_STORE(path->sample, word[11]);
+  LANES_STORE(depth, word[12]);
+  LANES_STORE(path->vertex, word[13]);
+  SUN_GLOBAL uint *words = (SUN_GLOBAL uint *)shadow_rays;
+  for (int lane = 0; lane < LANES; lane++)
+    if (on[lane])
+      for (uint i = 0; i < 14; i++) words[slot[lane] * 16 + i] = word[i][lane];
+}
+
+SUN_KERNEL void shade(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex *vertices, const SUN_GLOBAL VertexExtra *extras,
+                      const SUN_GLOBAL Triangle *triangles, const SUN_GLOBAL Instance *instances, const SUN_GLOBAL uint *records,
+                      const SUN_GLOBAL uint *page0, const SUN_GLOBAL uint *page1, const SUN_GLOBAL uint *page2, const SUN_GLOBAL uint *page3,
+                      SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays,
+                      const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
+  uint first = (uint)get_global_id(0) * LANES, length = counts[SUN_COUNT_LIVE];
+  if (first >= length) return;
+  Scene opened = open_scene(frame, vertices, extras, triangles, instances, records, page0, page1, page2, page3);
+  const Scene *scene = &opened;
+  FilmView film = open_film(frame, film_words, counts);
+  Paths paths;
+  paths.words = path_words;
+  paths.pool = frame->pool;
+  QueueLanes lanes = queue_lanes(rays, first, length);
+  uint_n word = gather_uint(status, lanes.slot);
+  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0));
+  if (!ANY(active)) return;
+  Path path = path_load(&paths, lanes.slot);
+  HitLanes hit = load_hits(hits, lanes.slot, active);
+  uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
+  uint_n kept = word & (uint_n)(SUN_STATUS_FIRST_HIT);
+  vec3 direction = make_vec3(path.direction_x, path.direction_y, path.direction_z);
+  vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
+  uint_n picture_y = path.pixel / (uint_n)(frame->tile_width);
+  uint_n picture_x = path.pixel - picture_y * (uint_n)(frame->tile_width) + (uint_n)(frame->tile_x0);
+  picture_y = picture_y + (uint_n)(frame->tile_y0);
+  SamplerKey key = sampler_key(frame->seed, picture_x, picture_y, path.sample, frame->sampler);
+
+  vec3 radiance = splat3((real)(0.0f));  // that reaches the path's last vertex along this ray ...
+  vec3 arrived = throughput;             // ... and what it is worth from there
+  mask escaped = active & !hit.hit;
+  if (ANY(escaped)) {
+    mask seen = (frame->flags & SUN_FRAME_TRANSPARENT) ? escaped & (depth != (uint_n)(0)) : escaped;
+    radiance = escaped_emission(scene, direction, path.pdf_solid_angle, seen);
+  }
+  uint_n next_word = (uint_n)(SUN_STATUS_ENDED | (SUN_ENDED_ESCAPED << SUN_STATUS_ENDED_SHIFT)) | depth | kept;
+
+  mask found = active & hit.hit;
+  if (ANY(found)) {
+    vec3 wo = negate3(direction);
+    Surface surface = make_surface(scene, &hit, wo);
+    // Alpha: a coin that belongs to the triangle decides whether it is there for this path.
+    real alpha = surface_alpha(scene, &surface, found);
+    mask straight = found & (alpha < 1.0f);
+    if (ANY(straight)) straight = straight & (alpha <= hash_coin(&key, path.vertex, hit.instance, hit.primitive, 0));
+    mask present = found & !straight;
+    throughput = mul3(throughput, surface_absorption(scene, &surface, hit.t, present));
+    arrived = throughput;
+    vec3 emission = hit_emission(scene, &surface, &hit, path.pdf_solid_angle, present);
+    radiance = select3(present, emission, radiance);
+    mask glowing = present & (max_of3(emission) > 0.0f);
+    mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
+    mask limited = present & (depth >= (uint_n)(frame->max_depth));
+    mask scatters = present & !limited & !unlit;
+    // Why the path ends here, if it does.
+    uint_n reason = glowing ? (uint_n)(SUN_ENDED_LIGHT) : limited ? (uint_n)(SUN_ENDED_DEPTH) : (uint_n)(SUN_ENDED_ABSORBED);
+    mask turned = found & !found, shadow = turned;
+    if (ANY(scatters)) {
+      Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
+      vec3 wo_local = to_local(&surface.shading, wo);
+      Lobes lobes = bsdf_lobes(&bsdf, scene->tables, wo_local);
+      if ((frame->flags & SUN_FRAME_DIRECT) && frame->emitter_count > 0) {
+        real u_choice = sample_1d(&key, SUN_DIM_EMITTER(path.vertex));
+        vec2 u_point = sample_2d(&key, SUN_DIM_EMITTER_POINT(path.vertex));
+        DirectSample direct = sample_direct(scene, &surface, &lobes, wo_local, u_choice, u_point, scatters);
+        store_shadow_rays(shadow_rays, lanes.slot, &direct, mul3(throughput, direct.contribution), &path, depth + (uint_n)(1));
+        shadow = direct.valid;
+      }
+      real u_lobe = sample_1d(&key, SUN_DIM_LOBE(path.vertex));
+      vec2 u = sample_2d(&key, SUN_DIM_DIRECTION(path.vertex));
+      Scatter scatter = sample_scatter(scene, &surface, &lobes, bsdf.solid, wo_local, u_lobe, u);
+      turned = scatters & scatter.valid & !scatter.straight;
+      straight = straight | (scatters & scatter.valid & scatter.straight);
+      throughput = select3(scatters & scatter.valid, mul3(throughput, scatter.weight), throughput);
+      path.origin_x = turned ? scatter.origin.x : path.origin_x;
+      path.origin_y = turned ? scatter.origin.y : path.origin_y;
+      path.origin_z = turned ? scatter.origin.z : path.origin_z;
+      path.direction_x = turned ? scatter.direction.x : path.direction_x;
+      path.direction_y = turned ? scatter.direction.y : path.direction_y;
+      path.direction_z = turned ? scatter.direction.z : path.direction_z;
+      path.pdf_solid_angle = turned ? scatter.pdf_solid_angle : path.pdf_solid_angle;
+    }
+    // Straight on: the same ray, strictly behind this hit.
+    path.passed_t = turned ? (real)(0.0f) : straight ? hit.t : path.passed_t;
+    path.passed_instance = turned ? (uint_n)(SUN_NONE) : straight ? hit.instance : path.passed_instance;
+    path.passed_primitive = turned ? (uint_n)(SUN_NONE) : straight ? hit.primitive : path.passed_primitive;
+    mask alive = turned | straight;
+    uint_n ended_word = (uint_n)(SUN_STATUS_ENDED) | (reason << (uint_n)(SUN_STATUS_ENDED_SHIFT));
+    uint_n found_word = (alive ? (uint_n)(SUN_STATUS_ALIVE) : ended_word) | (shadow ? (uint_n)(SUN_STATUS_SHADOW) : (uint_n)(0));
+    found_word = found_word | (turned ? depth + (uint_n)(1) : depth);
+    next_word = found ? found_word | kept : next_word;
+  }
+
+  real sum = fabs(radiance.x) + fabs(radiance.y) + fabs(radiance.z);
+  mask shines = active & !(sum == 0.0f);
+  if (ANY(shines)) {
+    vec3 worth = mul3(arrived, radiance);
+    film_contribute_lanes(frame, &film, shines, &path, depth, worth);
+  }
+  path.throughput_r = throughput.x;
+  path.throughput_g = throughput.y;
+  path.throughput_b = throughput.z;
+  path.vertex = path.vertex + (uint_n)(1);
+  path_store(&paths, lanes.slot, active, &path);
+  store_uint(status, lanes.slot, active, next_word);
+}

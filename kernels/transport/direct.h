@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Next-event estimation: one emitter, one point on it, and the shadow ray there.
+#ifndef SUN_TRANSPORT_DIRECT_H
+#define SUN_TRANSPORT_DIRECT_H
+#include "math/measure.h"
+#include "math/sampler.h"
+#include "math/warp.h"
+#include "scene/emitter.h"
+#include "scene/surface.h"
+
+SUN_NAMESPACE_BEGIN
+
+#define SUN_FAR 3.0e38f  // t_max of a ray to the environment
+
+typedef struct DirectSample {
+  vec3 origin, direction;  // the shadow ray; the direction reaches its target at t = 1 where t_max is 1
+  real t_max;
+  vec3 contribution;       // radiance times bsdf times cosine times weight over pdf, without the path's throughput
+  mask valid;
+} DirectSample;
+
+// A point on LANES emissive triangles, uniform in area.
+typedef struct EmitterPoint {
+  vec3 target;       // in front of the emitter by its own offset
+  vec3 emission;
+  real pdf_solid_angle;
+} EmitterPoint;
+
+SUN_FN EmitterPoint sample_triangle(const Scene *scene, uint_n instance, uint_n primitive, vec2 u, vec3 from, mask wanted) {
+  EmitterPoint point;
+  vec2 b = square_to_triangle(u);
+  // The surface of the sampled point, looked at from `from`: its emission is that of a ray that hits it from there.
+  Corners c = load_corners(scene, instance, primitive);
+  vec3 position = interpolate3(c.p[0], c.p[1], c.p[2], b.x, b.y);
+  vec3 n = corners_normal(&c);
+  vec3 to = sub3(from, position);
+  real distance2 = dot3(to, to);
+  vec3 wo = normalize3(to);
+  real twice_area = sqrt(dot3(n, n));
+  vec3 front_normal = normalize3(n);
+  real cosine = dot3(front_normal, wo);
+  Surface s;
+  s.position = position;
+  s.front = cosine > 0.0f;
+  s.normal = select3(s.front, front_normal, negate3(front_normal));
+  s.offset = surface_offset(&c);
+  s.material = c.material;
+  GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
+  s.uv0[0] = s.uv0[1] = s.uv1[0] = s.uv1[1] = (real)(0.0f);
+  for (int i = 0; i < 4; i++) s.color[i] = (real)(1.0f);
+#if SUN_TEXTURES
+  surface_coordinates(scene, &s, &c, b.x, b.y);
+#endif
+  point.emission = surface_emission(scene, &s, wanted);
+  // Part of an emitter that is not there (alpha) emits as much as a ray that meets it by chance would find.
+  point.emission = scale3(point.emission, surface_alpha(scene, &s, wanted));
+  real reach = fabs(cosine) * twice_area * 0.5f;
+  mask usable = wanted & (reach > 0.0f) & (distance2 > 0.0f);
+  point.pdf_solid_angle = usable ? distance2 / (usable ? reach : (real)(1.0f)) : (real)(0.0f);
+  point.target = add3(position, scale3(s.normal, s.offset));
+  return point;
+}
+
+// A shadow ray for LANES surfaces. `throughput` is not in it. The choice and the point take SUN_DIM_EMITTER and SUN_DIM_EMITTER_POINT of this vertex.
+SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, real u_choice, vec2 u_point, mask active) {
+  DirectSample direct;
+  const SUN_GLOBAL Frame *frame = scene->frame;
+  vec3 black = splat3((real)(0.0f));
+  EmitterChoice choice = choose_emitter(scene->emitters, frame->emitter_count, u_choice);
+  uint_n kind, a, b;
+  GATHER_UINT(kind, scene->emitters, choice.index, kind);
+  GATHER_UINT(a, scene->emitters, choice.index, a);
+  GATHER_UINT(b, scene->emitters, choice.index, b);
+  mask is_triangle = active & (kind == (uint_n)(SUN_EMITTER_TRIANGLE));
+  mask is_light = active & (kind == (uint_n)(SUN_EMITTER_LIGHT));
+  mask is_environment = active & (kind == (uint_n)(SUN_EMITTER_ENVIRONMENT));
+
+  vec3 emission = black;
+  vec3 target = s->position;          // of triangles and of lights that have a place
+  vec3 direction = s->shading.normal; // unit length, from the surface
+  real pdf = (real)(0.0f);            // solid angle; 1 for lights, which are deltas
+  mask has_target = is_triangle;
+
+  if (ANY(is_triangle)) {
+    EmitterPoint point = sample_triangle(scene, is_triangle ? a : (uint_n)(0), is_triangle ? b : (uint_n)(0), u_point, s->position, is_triangle);
+    emission = select3(is_triangle, point.emission, emission);
+    target = select3(is_triangle, point.target, target);
+    pdf = is_triangle ? point.pdf_solid_angle : pdf;
+    direction = select3(is_triangle, normalize3(sub3(point.target, s->position)), direction);
+  }
+  if (ANY(is_light)) {
+    LightSample light = light_sample(scene->lights, is_light ? a : (uint_n)(0), s->position);
+    emission = select3(is_light, light.radiance, emission);
+    mask placed = is_light & (light.distance < SUN_FAR);
+    target = select3(placed, add3(s->position, scale3(light.direction, placed ? light.distance : (real)(0.0f))), target);
+    has_target = has_target | placed;
+    direction = select3(is_light, light.direction, direction);
+    pdf = is_light ? (real)(1.0f) : pdf;
+  }
+  if (ANY(is_environment)) {
+    EnvironmentSample sample = environment_sample(&frame->environment, scene->environment_cdf, u_point.x, u_point.y);
+    vec3 radiance = environment_radiance(&frame->environment, scene->environment_texels, sample.direction);
+    emission = select3(is_environment, radiance, emission);
+    direction = select3(is_environment, sample.direction, direction);
+    pdf = is_environment ? sample.pdf : pdf;
+  }
+
+  pdf = pdf * choice.pmf;
+  mask valid = active & (pdf > 0.0f) & (max_of3(emission) > 0.0f);
+  direct.contribution = black;
+  if (ANY(valid)) {
+    vec3 wi_local = to_local(&s->shading, direction);
+    BsdfEval eval = lobes_eval(lobes, scene->tables, wo_local, wi_local);
+    // The true side has to agree with the shading side, or light leaks through.
+    mask same_side = (dot3(direction, s->normal) > 0.0f) == (wi_local.z > 0.0f);
+    valid = valid & same_side & (max_of3(eval.f_cos) > 0.0f);
+    // A light is a delta: no ray finds it by chance, so it keeps its whole weight.
+    real weight = is_light ? (real)(1.0f) : power_heuristic(pdf, eval.pdf);
+    real scale = valid ? weight / (valid ? pdf : (real)(1.0f)) : (real)(0.0f);
+    direct.contribution = select3(valid, scale3(mul3(eval.f_cos, emission), scale), black);
+  }
+  direct.origin = surface_origin(s, direction);
+  direct.direction = select3(has_target, sub3(target, direct.origin), direction);
+  direct.t_max = has_target ? (real)(1.0f) : (real)(SUN_FAR);
+  direct.valid = valid;
+  return direct;
+}
+
+SUN_NAMESPACE_END
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The worth of an emitter that a ray ran into: all of it where no shadow ray could have counted it, otherwise weighted against that.
+#ifndef SUN_TRANSPORT_EMISSION_H
+#define SUN_TRANSPORT_EMISSION_H
+#include "math/measure.h"
+#include "scene/emitter.h"
+#include "scene/surface.h"
+
+SUN_NAMESPACE_BEGIN
+
+// Weight of a hit whose direction was drawn with pdf_solid_angle (0: delta) where a shadow ray draws it with pdf_emitter (0: never) [Veach97 9.2].
+SUN_FN real emission_weight(const Scene *scene, real pdf_solid_angle, real pdf_emitter) {
+  if ((scene->frame->flags & SUN_FRAME_DIRECT) == 0) return (real)(1.0f);
+  mask alone = (pdf_solid_angle <= 0.0f) | (pdf_emitter <= 0.0f);
+  return alone ? (real)(1.0f) : power_heuristic(pdf_solid_angle, pdf_emitter);
+}
+
+// Solid-angle pdf with which direct.h would send a shadow ray from the ray's origin to this point of the surface.
+SUN_FN real emitter_pdf(const Scene *scene, const Surface *s, const HitLanes *hit, mask emits) {
+  uint_n first, own;
+  GATHER_UINT(first, scene->instances, hit->instance, first_emitter);
+  own = gather_uint(scene->triangle_emitter, hit->primitive);
+  mask known = emits & (first != (uint_n)(SUN_NONE)) & (own != (uint_n)(SUN_NONE));
+  uint_n index = known ? first + own : (uint_n)(0);
+  real pmf;
+  GATHER_FLOAT(pmf, scene->emitters, index, pmf);
+  real cosine = fabs(s->cos_front);
+  mask usable = known & (s->area > 0.0f) & (cosine > 0.0f);
+  return usable ? pmf * (hit->t * hit->t) / ((usable ? s->area : (real)(1.0f)) * (usable ? cosine : (real)(1.0f))) : (real)(0.0f);
+}
+
+// Radiance times weight that a hit surface sends back along the ray.
+SUN_FN vec3 hit_emission(const Scene *scene, const Surface *s, const HitLanes *hit, real pdf_solid_angle, mask active) {
+  vec3 emission = surface_emission(scene, s, active);
+  mask emits = active & (max_of3(emission) > 0.0f);
+  if (!ANY(emits) || scene->frame->emitter_count == 0) return emission;
+  return scale3(emission, emission_weight(scene, pdf_solid_angle, emitter_pdf(scene, s, hit, emits)));
+}
+
+// The same for a ray that leaves the scene.
+SUN_FN vec3 escaped_emission(const Scene *scene, vec3 direction, real pdf_solid_angle, mask active) {
+  vec3 black = splat3((real)(0.0f));
+  const SUN_GLOBAL Environment *environment = &scene->frame->environment;
+  if (environment->kind == SUN_ENVIRONMENT_NONE || !ANY(active)) return black;
+  vec3 radiance = environment_radiance(environment, scene->environment_texels, direction);
+  real pdf = (real)(0.0f);
+  if (environment->emitter != SUN_NONE)
+    pdf = scene->emitters[environment->emitter].pmf * environment_pdf(environment, scene->environment_cdf, direction);
+  return select3(active, scale3(radiance, emission_weight(scene, pdf_solid_angle, pdf)), black);
+}
+
+SUN_NAMESPACE_END
+#endif

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// Valid files, damaged at random but always alike: each mutant gives a sound scene or an Error, never a crash. Meant for the sanitizers.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "base/file.h"
+#include "host/import/gltf_builder.h"
+
+namespace sunstone {
+namespace {
+
+std::vector<char> whole(const std::filesystem::path &path) {
+  const std::vector<std::byte> data = read_file(path);
+  return {reinterpret_cast<const char *>(data.data()), reinterpret_cast<const char *>(data.data()) + data.size()};
+}
+
+// A number of the generator's below n; std::uniform_int_distribution may differ between libraries.
+std::size_t below(std::mt19937 &random, std::size_t n) { return random() % n; }
+
+void damage(std::vector<char> &bytes, std::mt19937 &random) {
+  if (bytes.empty()) return;
+  switch (below(random, 6)) {
+    case 0:
+      bytes.resize(below(random, bytes.size()));
+      break;
+    case 1: {  // a digit for another, so that the JSON stays JSON
+      for (int tries = 0; tries < 200; tries++) {
+        char &c = bytes[below(random, bytes.size())];
+        if (c >= '0' && c <= '9') {
+          c = static_cast<char>('0' + below(random, 10));
+          break;
+        }
+      }
+      break;
+    }
+    case 2: {  // a piece twice
+      const std::size_t at = below(random, bytes.size()), count = std::min(bytes.size() - at, 1 + below(random, 40));
+      const std::vector<char> piece(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at + count));
+      bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), piece.begin(), piece.end());
+      break;
+    }
+    case 3: {  // a piece less
+      const std::size_t at = below(random, bytes.size()), count = std::min(bytes.size() - at, 1 + below(random, 40));
+      bytes.erase(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at + count));
+      break;
+    }
+    default:
+      for (std::size_t n = 1 + below(random, 4); n > 0; n--) bytes[below(random, bytes.size())] ^= static_cast<char>(1 << below(random, 8));
+  }
+}
+
+TEST(GltfMutants, NeverCrash) {
+  const std::filesystem::path folder = std::filesystem::path(SUNSTONE_SOURCE_DIR) / "tests/data/malformed";
+  std::vector<std::pair<std::string, std::vector<char>>> seeds;
+  for (const char *name : {"valid-minimal.glb", "valid-glb-unknown-chunk.glb", "valid-negative-scale.gltf", "valid-zero-area-triangles.gltf",
+                           "image-png-truncated.gltf", "sparse-index-out-of-range.gltf", "light-spot-inverted-cone.gltf"})
+    seeds.emplace_back(name, whole(folder / name));
+  {
+    // One that has a little of everything.
+    test::GltfBuilder file;
+    file.primitive()["indices"] = file.accessor<std::uint8_t>("SCALAR", {0, 1, 2});
+    file.primitive()["attributes"]["NORMAL"] = file.accessor<std::int8_t>("VEC3", {0, 0, 127, 0, 127, 0, 127, 0, 0}, true);
+    file.primitive()["attributes"]["TANGENT"] = file.accessor<float>("VEC4", {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, -1});
+    file.primitive()["attributes"]["COLOR_0"] = file.accessor<std::uint16_t>("VEC4", std::vector<std::uint16_t>(12, 65535), true);
+    file.primitive()["targets"] = {{{"POSITION", file.accessor<float>("VEC3", std::vector<float>(9, 0.5f))}}};
+    file.root["meshes"][0]["weights"] = {0.5};
+    file.root["materials"] = {
+        {{"extensions", {{"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 2}}}, {"KHR_materials_ior", {{"ior", 1.4}}}}}}};
+    file.primitive()["material"] = 0;
+    const int offsets = file.accessor<float>("VEC3", {1, 0, 0, 0, 1, 0});
+    file.root["nodes"] = {{{"children", {1, 2}}},
+                          {{"mesh", 0}, {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", offsets}}}}}}}},
+                          {{"mesh", 0}, {"rotation", {0, 0, 1, 1}}}};
+    seeds.emplace_back("everything.glb", file.glb());
+  }
+  const test::TemporaryFolder temporary;
+  std::mt19937 random(1);
+  std::size_t imported = 0, refused = 0;
+  for (int mutant = 0; mutant < 2400; mutant++) {
+    auto [name, bytes] = seeds[static_cast<std::size_t>(mutant) % seeds.size()];
+    for (std::size_t n = 1 + below(random, 3); n > 0; n--) damage(bytes, random);
+    const std::filesystem::path path = temporary.write(name, bytes);
+    Notices notices;
+    try {
+      const Scene scene = import_scene(path, {}, notices);
+      for (const Instance &instance : scene.instances) ASSERT_LT(static_cast<std::size_t>(instance.mesh), scene.meshes.size());
+      imported++;
+    } catch (const Error &error) {
+      ASSERT_NE(std::string(error.what()), "");
+      refused++;
+    }
+  }
+  // Neither all alike: the mutants reach the parts behind the JSON.
+  EXPECT_GT(imported, 100u);
+  EXPECT_GT(refused, 100u);
+  RecordProperty("imported", static_cast<int>(imported));
+  RecordProperty("refused", static_cast<int>(refused));
+}
+
+}  // namespace
+}  // namespace sunstone

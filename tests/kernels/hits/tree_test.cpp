@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+// The trees: boxes contain what is below them exactly, every triangle is there exactly once, and no input makes them too deep.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+
+#include "base/error.h"
+#include "flatten/bvh.h"
+#include "kernels/hits/cases.h"
+
+namespace sunstone::hits {
+namespace {
+
+using glm::vec3;
+using kernel::uint;
+
+struct Box {
+  vec3 lower{INFINITY}, upper{-INFINITY};
+  void include(const Box &b) {
+    lower = glm::min(lower, b.lower);
+    upper = glm::max(upper, b.upper);
+  }
+  bool operator==(const Box &b) const { return lower == b.lower && upper == b.upper; }
+};
+
+template <class T> T read(const std::vector<std::byte> &bytes, std::size_t i) {
+  T value;
+  EXPECT_LE((i + 1) * sizeof(T), bytes.size());
+  std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
+  return value;
+}
+
+// Walks a tree as the kernels do, checks every box against what is below it, and collects its leaves' ids (of triangles, or numbers of instances).
+class Walk {
+ public:
+  Walk(const FlatScene &scene, const Tree &tree, bool top) : scene_(scene), tree_(tree), top_(top) {}
+  std::vector<uint> ids;
+  std::size_t deepest = 0, stack = 0;
+
+  Box visit(uint reference) {
+    if (tree_.layout == Layout::binary) return visit_binary(reference, 1);
+    if (tree_.layout == Layout::wide8) return visit_wide<kernel::Wide8Node>(reference, 1, 0);
+    return visit_wide<kernel::Wide16Node>(reference, 1, 0);
+  }
+
+ private:
+  Box instance(uint number) {
+    ids.push_back(number);
+    const kernel::Instance &i = scene_.instances.at(number);
+    return {vec3(i.lower[0], i.lower[1], i.lower[2]), vec3(i.upper[0], i.upper[1], i.upper[2])};
+  }
+  Box triangle(const float *v, uint id) {
+    ids.push_back(id);
+    const kernel::Triangle &t = scene_.triangles.at(id & SUN_ID_PRIMITIVE);
+    Box box;
+    for (int k = 0; k < 3; k++) {
+      EXPECT_EQ(std::memcmp(v + 3 * k, scene_.vertices[t.vertex[k]].position, 12), 0);
+      const vec3 p(v[3 * k], v[3 * k + 1], v[3 * k + 2]);
+      box.include({p, p});
+    }
+    return box;
+  }
+  Box visit_binary(uint number, std::size_t depth) {
+    deepest = std::max(deepest, depth);
+    stack = std::max(stack, depth);
+    const auto node = read<kernel::BinaryNode>(tree_.nodes, number);
+    Box box;
+    for (uint i = 0; i < node.count; i++) {
+      if (top_) {
+        box.include(instance(tree_.instance_list.at(node.first + i)));
+      } else {
+        const auto leaf = read<kernel::LeafTriangle>(tree_.leaves, node.first + i);
+        if (!std::isnan(leaf.v[0])) box.include(triangle(leaf.v, leaf.id));
+        else return {};
+      }
+    }
+    if (!top_) EXPECT_LE(node.count, 4u);
+    if (node.count == 0)
+      for (uint child = node.first; child < node.first + 2; child++) box.include(visit_binary(child, depth + 1));
+    const Box own{vec3(node.lower[0], node.lower[1], node.lower[2]), vec3(node.upper[0], node.upper[1], node.upper[2])};
+    EXPECT_TRUE(own == box);
+    return own;
+  }
+  template <class Node> Box visit_wide(uint reference, std::size_t depth, std::size_t waiting) {
+    deepest = std::max(deepest, depth);
+    Box box;
+    if (reference & SUN_WIDE_LEAF) {
+      if (top_) return instance(reference & ~SUN_WIDE_LEAF);
+      const auto pack = read<kernel::WidePack>(tree_.leaves, reference & ~SUN_WIDE_LEAF);
+      for (int lane = 0; lane < SUN_PACK; lane++) {
+        if (std::isnan(pack.v[0][lane])) continue;
+        float v[9];
+        for (int k = 0; k < 9; k++) v[k] = pack.v[k][lane];
+        box.include(triangle(v, pack.id[lane]));
+      }
+      return box;
+    }
+    const auto node = read<Node>(tree_.nodes, reference);
+    std::size_t children = 0;
+    for (std::size_t slot = 0; slot < std::size(node.child); slot++) children += node.plane[0][slot] <= node.plane[1][slot];
+    stack = std::max(stack, waiting + children);
+    EXPECT_GE(children, 2u);
+    for (std::size_t slot = 0; slot < std::size(node.child); slot++) {
+      const Box own{vec3(node.plane[0][slot], node.plane[2][slot], node.plane[4][slot]), vec3(node.plane[1][slot], node.plane[3][slot], node.plane[5][slot])};
+      if (own == Box{}) continue;
+      EXPECT_TRUE(own == visit_wide<Node>(node.child[slot], depth + 1, waiting + children - 1));
+      box.include(own);
+    }
+    return box;
+  }
+
+  const FlatScene &scene_;
+  const Tree &tree_;
+  const bool top_;
+};
+
+void check(const FlatScene &scene, Layout layout) {
+  const Tree tree = build_tree(scene, layout);
+  ASSERT_EQ(tree.layout, layout);
+  ASSERT_EQ(tree.roots.size(), scene.instances.size());
+  std::vector<bool> seen(scene.meshes.size());
+  const std::size_t room = layout == Layout::binary ? SUN_BINARY_STACK : SUN_WIDE_STACK;
+  for (std::size_t i = 0; i < scene.instances.size(); i++) {
+    const uint mesh = scene.instance_mesh[i];
+    if (seen[mesh]) continue;
+    seen[mesh] = true;
+    Walk walk(scene, tree, false);
+    walk.visit(tree.roots[i]);
+    const MeshRange &range = scene.meshes[mesh];
+    const std::multiset<uint> got(walk.ids.begin(), walk.ids.end());
+    const std::multiset<uint> expected(scene.triangle_ids.begin() + range.first_triangle, scene.triangle_ids.begin() + range.first_triangle + range.triangle_count);
+    EXPECT_TRUE(got == expected) << "mesh " << mesh << ": " << got.size() << " of " << expected.size();
+    EXPECT_LE(walk.stack, room);
+    EXPECT_LE(walk.deepest, tree.depth);
+  }
+  if (scene.instances.size() > 1) {
+    Walk walk(scene, tree, true);
+    walk.visit(tree.top_root);
+    std::multiset<uint> expected;
+    for (uint i = 0; i < scene.instances.size(); i++) expected.insert(i);
+    EXPECT_TRUE(std::multiset<uint>(walk.ids.begin(), walk.ids.end()) == expected);
+    EXPECT_LE(walk.stack, room);
+  }
+}
+
+class Trees : public testing::TestWithParam<Layout> {};
+
+TEST_P(Trees, ContainTheirChildrenAndEveryTriangleOnce) {
+  for (const Case &c : all_cases()) {
+    SCOPED_TRACE(c.name);
+    check(c.scene, GetParam());
+  }
+}
+
+TEST_P(Trees, TakeAnyNumberOfTriangles) {
+  Random random(31);
+  for (const int count : {0, 1, 2, 4, 5, 8, 9, 16, 17, 100, 3000}) {
+    SCOPED_TRACE(count);
+    Soup soup;
+    for (int i = 0; i < count; i++) {
+      const vec3 at = random.in_box(vec3(-1), vec3(1));
+      soup.triangle(at, at + 0.1f * random.direction(), at + 0.1f * random.direction());
+    }
+    check(soup.finish(), GetParam());
+  }
+}
+
+TEST_P(Trees, EndOnEqualTriangles) {
+  Soup soup;
+  for (int i = 0; i < 5000; i++) soup.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  check(soup.finish(), GetParam());
+}
+
+TEST_P(Trees, EndOnEqualInstances) {
+  Soup soup;
+  soup.begin_mesh();
+  soup.box(vec3(-1), vec3(1));
+  for (int i = 0; i < 300; i++) soup.instance(0, identity);
+  check(soup.finish(), GetParam());
+}
+
+// Sizes that fall by a constant factor make a tree by SAH peel off a few triangles a level, down to the smallest float and up beyond what areas hold.
+TEST_P(Trees, StayWithinTheStackOnGeometricSeries) {
+  for (const float factor : {0.5f, 0.9f, 0.98f}) {
+    SCOPED_TRACE(factor);
+    Soup soup;
+    float size = 1e17f;
+    for (int i = 0; i < 3000 && size > 1e-38f; i++, size *= factor) soup.triangle({size, 0, 0}, {2 * size, size, 0}, {2 * size, 0, size});
+    check(soup.finish(), GetParam());
+  }
+  Soup soup;
+  for (float size = 3e38f; size > 1e-38f; size *= 0.7f) soup.triangle({size, 0, 0}, {size, size, 0}, {size, 0, -size});
+  check(soup.finish(), GetParam());
+}
+
+TEST_P(Trees, RefuseWhatIsNotFinite) {
+  Soup soup;
+  for (int i = 0; i < 20; i++) soup.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  FlatScene scene = soup.finish();
+  scene.vertices[10].position[1] = NAN;
+  EXPECT_THROW(build_tree(scene, GetParam()), Error);
+  scene.vertices[10].position[1] = INFINITY;
+  EXPECT_THROW(build_tree(scene, GetParam()), Error);
+}
+
+TEST_P(Trees, RefuseAnIdentityInstanceThatIsSmallerThanItsMesh) {
+  Soup soup;
+  soup.box(vec3(-1), vec3(1));
+  FlatScene scene = soup.finish();
+  scene.instances[0].upper[2] = std::nextafter(1.0f, 0.0f);
+  EXPECT_THROW(build_tree(scene, GetParam()), Error);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Trees, testing::Values(Layout::binary, Layout::wide8, Layout::wide16), [](const auto &info) {
+  return std::string(info.param == Layout::binary ? "binary" : info.param == Layout::wide8 ? "wide8" : "wide16");
+});
+
+}  // namespace
+}  // namespace sunstone::hits
