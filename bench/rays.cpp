@@ -54,14 +54,6 @@ constexpr float far_away = 1e30f;
 
 }  // namespace
 
-std::uint32_t hash_number(std::uint32_t x) {
-  x ^= x >> 16;
-  x *= 0x7feb352du;
-  x ^= x >> 15;
-  x *= 0x846ca68bu;
-  return x ^ x >> 16;
-}
-
 std::vector<TraceRay> primary_rays(const kernel::Camera &camera, unsigned size) {
   const unsigned tiles = (size + 3) / 4;
   size = tiles * 4;

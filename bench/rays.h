@@ -30,6 +30,12 @@ std::vector<TraceRay> shadow_rays(const FlatScene &scene, std::span<const TraceR
 kernel::Camera corner_camera(const Bounds &bounds);
 
 // 32-bit hash of a number, for made scenes and rays.
-std::uint32_t hash_number(std::uint32_t x);
+inline std::uint32_t hash_number(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  return x ^ x >> 16;
+}
 
 }  // namespace sunstone

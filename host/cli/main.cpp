@@ -32,6 +32,7 @@ int main(int argc, char **argv) {
   add_info(app, context);
   add_compare(app, context);
   add_merge(app, context);
+  add_bench(app, context);
   add_cache(app, context);
   add_completion(app, context);
   try {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 
+#include "bench/traversal.h"
 #include "film/film.h"
 #include "flatten/bvh.h"
 #include "flatten/camera.h"
@@ -34,6 +35,8 @@ struct Content {
   FlatScene (*flatten)(const Scene &scene, const FlattenOptions &options, Notices &notices) = nullptr;
   Tree (*build_tree)(const FlatScene &scene, Layout layout, const std::function<void(const char *what, double fraction)> &progress) = nullptr;
   kernel::Camera (*flatten_camera)(const Camera &camera, int width, int height) = nullptr;
+  // bench/embree_reference.h: embree-high, embree-robust, embree-medium or embree-16, over this geometry.
+  TraversalReference (*embree)(const FlatScene &scene, const std::string &name, unsigned threads) = nullptr;
 };
 
 // The only symbol of the library: the table, or null where the caller's is of another size, so that a library and a binary of two builds do not meet.

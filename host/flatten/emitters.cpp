@@ -27,8 +27,8 @@ double luminance_of(const float *rgb) { return kernel::luminance(kernel::make_ve
 
 // The emission of a material: its colour, and where its texture comes from.
 struct Emission {
-  double luminance = 0;       // of the factor alone
-  double floor = 0;           // least mean of a triangle, with a texture
+  double luminance = 0;  // of the factor alone
+  double floor = 0;      // least mean of a triangle, with a texture
   uint ref = SUN_NONE;
 };
 

@@ -71,7 +71,8 @@ double sphere_integral(std::span<const float> means, std::span<const double> sin
 
 // RGB texels with the strength multiplied in; bytes are sRGB.
 std::vector<float> radiance_of(const Image &map, float strength, std::span<const float> srgb, std::size_t &bad) {
-  const std::size_t texels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height), channels = static_cast<std::size_t>(map.channels);
+  const std::size_t texels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height),
+                    channels = static_cast<std::size_t>(map.channels);
   std::vector<float> out(3 * texels);
   for (std::size_t i = 0; i < texels; i++)
     for (std::size_t c = 0; c < 3; c++) {
@@ -134,7 +135,8 @@ double flatten_environment(const Scene &scene, std::size_t max_bytes, FlatScene 
   const Image &map = *environment.map;
   const auto width = static_cast<std::size_t>(map.width), height = static_cast<std::size_t>(map.height);
   if (width * height > max_bytes / (3 * sizeof(float)))
-    throw Error{printable(map.name), "the environment map does not fit into one buffer of " + std::to_string(max_bytes >> 20) + " MiB", "use a smaller map"};
+    throw Error{printable(map.name), "the environment map does not fit into one buffer of " + std::to_string(max_bytes >> 20) + " MiB",
+                "use a smaller map"};
   std::size_t bad = 0;
   flat.environment_texels = radiance_of(map, environment.strength, std::span(flat.tables).subspan(SUN_TABLE_SRGB, 256), bad);
   if (bad) notices.warning(printable(map.name), std::to_string(bad) + " values are negative, not finite or beyond 1e30; they were clamped");

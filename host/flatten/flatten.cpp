@@ -12,7 +12,8 @@
 namespace sunstone {
 namespace {
 
-// Everything but the tree and the tables, field by field; where a texture lies in the pages depends on the device and is left out, what it holds is not.
+// Everything but the tree and the tables, field by field; where a texture lies in the pages depends on the device and is left out, what it holds is
+// not.
 Hash hash_of(const FlatScene &flat) {
   Hasher hasher;
   const auto add = [&](const auto &values) { hasher.span(std::span(values.data(), values.size())); };
@@ -33,7 +34,10 @@ Hash hash_of(const FlatScene &flat) {
   for (kernel::uint i = 0; i < flat.textures.size(); i++) {
     kernel::Texture texture = flat.textures[i];
     const auto [found, added] = earlier.try_emplace({texture.page, texture.offset}, i);
-    const std::size_t words = std::size_t(texture.width) * texture.height * (texture.format == SUN_TEXEL_RGBA32F ? 4 : texture.format == SUN_TEXEL_RGBA16F ? 2 : 1);
+    const std::size_t words = std::size_t(texture.width) * texture.height *
+                              (texture.format == SUN_TEXEL_RGBA32F   ? 4
+                               : texture.format == SUN_TEXEL_RGBA16F ? 2
+                                                                     : 1);
     if (added) hasher.span(std::span(flat.texel_pages[texture.page]).subspan(texture.offset, words));
     hasher.value(found->second);
     texture.page = texture.offset = 0;
@@ -72,26 +76,36 @@ MemoryEstimate estimate_memory(const Scene &scene, Layout layout) {
     }
   }
   estimate.geometry = vertices * (sizeof(kernel::Vertex) + (extras ? sizeof(kernel::VertexExtra) : 0)) +
-                      triangles * (sizeof(kernel::Triangle) + 2 * sizeof(kernel::uint)) + instances * (sizeof(kernel::Instance) + 2 * sizeof(kernel::uint));
+                      triangles * (sizeof(kernel::Triangle) + 2 * sizeof(kernel::uint)) +
+                      instances * (sizeof(kernel::Instance) + 2 * sizeof(kernel::uint));
   // Leaves are about half full; a node of W children leads to about W / 2 others.
   const std::size_t items = triangles + instances;
   switch (layout) {
-    case Layout::binary: estimate.tree = items * sizeof(kernel::LeafTriangle) + items * sizeof(kernel::BinaryNode); break;
-    case Layout::wide8: estimate.tree = items / 4 * (sizeof(kernel::WidePack) + sizeof(kernel::Wide8Node) / 4); break;
-    case Layout::wide16: estimate.tree = items / 4 * (sizeof(kernel::WidePack) + sizeof(kernel::Wide16Node) / 8); break;
+    case Layout::binary:
+      estimate.tree = items * sizeof(kernel::LeafTriangle) + items * sizeof(kernel::BinaryNode);
+      break;
+    case Layout::wide8:
+      estimate.tree = items / 4 * (sizeof(kernel::WidePack) + sizeof(kernel::Wide8Node) / 4);
+      break;
+    case Layout::wide16:
+      estimate.tree = items / 4 * (sizeof(kernel::WidePack) + sizeof(kernel::Wide16Node) / 8);
+      break;
   }
   estimate.textures = texel_bytes(scene);
   estimate.other = SUN_TABLE_FLOATS * sizeof(float) + scene.lights.size() * (sizeof(kernel::Light) + sizeof(kernel::Emitter)) +
                    (scene.materials.size() + 1) * sizeof(kernel::Material);
   if (scene.environment.map) {
     const auto texels = static_cast<std::size_t>(scene.environment.map->width) * static_cast<std::size_t>(scene.environment.map->height);
-    estimate.other += (texels * 4 + 2 * static_cast<std::size_t>(scene.environment.map->height) + 1) * sizeof(float);  // radiance and its distribution
+    estimate.other +=
+        (texels * 4 + 2 * static_cast<std::size_t>(scene.environment.map->height) + 1) * sizeof(float);  // radiance and its distribution
   }
   for (const Mesh &mesh : scene.meshes)
     for (const Primitive &primitive : mesh.primitives) {
       const bool emits = primitive.material >= 0 && (scene.materials[static_cast<std::size_t>(primitive.material)].emission != glm::vec3(0) ||
                                                      scene.materials[static_cast<std::size_t>(primitive.material)].unlit);
-      if (emits) estimate.other += primitive.indices.size() / 3 * uses[static_cast<std::size_t>(&mesh - scene.meshes.data())].instances * sizeof(kernel::Emitter);
+      if (emits)
+        estimate.other +=
+            primitive.indices.size() / 3 * uses[static_cast<std::size_t>(&mesh - scene.meshes.data())].instances * sizeof(kernel::Emitter);
     }
   return estimate;
 }

@@ -16,9 +16,9 @@ namespace {
 
 using kernel::uint;
 
-constexpr std::size_t small_mesh = 4096;                        // triangles of all copies of a mesh together
-constexpr std::size_t exact_boxes = std::size_t(1) << 26;       // vertices that are transformed, at most, for the boxes of one mesh's instances
-constexpr float farthest = 1e18f;                               // of a coordinate: squares stay finite
+constexpr std::size_t small_mesh = 4096;                   // triangles of all copies of a mesh together
+constexpr std::size_t exact_boxes = std::size_t(1) << 26;  // vertices that are transformed, at most, for the boxes of one mesh's instances
+constexpr float farthest = 1e18f;                          // of a coordinate: squares stay finite
 
 // A transform, and what follows of it.
 struct Placement {
@@ -159,7 +159,8 @@ Bounds range_bounds(const FlatScene &flat, const MeshRange &range) {
   return box;
 }
 
-// A box that contains every transformed vertex, and hits found in mesh space: these are off by rounding errors of the order of the terms that were added.
+// A box that contains every transformed vertex, and hits found in mesh space: these are off by rounding errors of the order of the terms that were
+// added.
 Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &local, const float *m, bool exact) {
   Bounds box;
   const auto include = [&](const glm::vec3 &point) {
@@ -177,7 +178,8 @@ Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &lo
   } else {
     // Rounding is monotone, so the corners' transforms bound every vertex's.
     for (int corner = 0; corner < 8; corner++)
-      include(apply(m, corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y, corner & 4 ? local.upper.z : local.lower.z));
+      include(apply(m, corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
+                    corner & 4 ? local.upper.z : local.lower.z));
   }
   for (int r = 0; r < 3; r++) {
     float terms = std::fabs(m[4 * r + 3]);
@@ -217,8 +219,8 @@ void number_emitters(FlatScene &flat) {
 }
 
 // The instances of the mesh ranges: the identity for what was baked, then those of the meshes kept in their own space, in the scene's order.
-void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const std::vector<std::size_t> &range_of_mesh, bool any_baked, FlatScene &flat,
-                     Notices &notices) {
+void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const std::vector<std::size_t> &range_of_mesh, bool any_baked,
+                     FlatScene &flat, Notices &notices) {
   const auto add = [&](const Placement &p, std::size_t range) {
     kernel::Instance instance{};
     std::copy(std::begin(p.m), std::end(p.m), instance.to_world);
@@ -252,7 +254,7 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
   std::size_t to = 0, far = 0;
   for (std::size_t i = 0; i < boxes.size(); i++) {
     const bool usable = in_range(boxes[i]) && std::all_of(std::begin(flat.instances[i].to_object), std::end(flat.instances[i].to_object),
-                                                         [](float x) { return std::isfinite(x); });
+                                                          [](float x) { return std::isfinite(x); });
     if (!usable) {
       far++;
       continue;
@@ -269,7 +271,8 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
   }
   flat.instances.resize(to);
   flat.instance_mesh.resize(to);
-  if (far) notices.warning(scene.name, std::to_string(far) + " instances lie beyond 1e18 m or cannot be inverted in single precision; they are left out");
+  if (far)
+    notices.warning(scene.name, std::to_string(far) + " instances lie beyond 1e18 m or cannot be inverted in single precision; they are left out");
 }
 
 void check_size(const char *what, std::size_t count, std::size_t size, std::size_t max_bytes) {

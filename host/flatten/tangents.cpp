@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// [Mikkelsen08] chapter 3 and appendix: corners with the same position, normal and coordinates are one vertex; triangles about a vertex that share edges and an
-// orientation of their coordinates are a group; a group has one tangent, weighted by angles. The split of groups by an angle is left out: at the usual 180
-// degrees it parts tangents that are exactly opposite and no others.
+// [Mikkelsen08] chapter 3 and appendix: corners with the same position, normal and coordinates are one vertex; triangles about a vertex that share
+// edges and an orientation of their coordinates are a group; a group has one tangent, weighted by angles. The split of groups by an angle is left
+// out: at the usual 180 degrees it parts tangents that are exactly opposite and no others.
 #include "flatten/tangents.h"
 
 #include <algorithm>
@@ -145,8 +145,8 @@ std::vector<Group> find_groups(const std::vector<std::uint32_t> &vertex, std::ve
   return groups;
 }
 
-glm::vec3 group_tangent(const Group &group, const std::vector<std::uint32_t> &vertex, const std::vector<Face> &faces, std::span<const glm::vec3> positions,
-                        std::span<const glm::vec3> normals) {
+glm::vec3 group_tangent(const Group &group, const std::vector<std::uint32_t> &vertex, const std::vector<Face> &faces,
+                        std::span<const glm::vec3> positions, std::span<const glm::vec3> normals) {
   glm::vec3 sum(0);
   for (const std::int32_t at : group.faces) {
     const Face &face = faces[static_cast<std::size_t>(at)];

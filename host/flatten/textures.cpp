@@ -24,13 +24,18 @@ uint wrap_code(Wrap wrap) { return wrap == Wrap::repeat ? SUN_WRAP_REPEAT : wrap
 std::size_t words_per_texel(uint format) { return format == SUN_TEXEL_RGBA32F ? 4 : format == SUN_TEXEL_RGBA16F ? 2 : 1; }
 
 // Texel i of an image of any number of channels: grey is spread over r, g and b, and alpha is 1 where there is none.
-template <class T> std::array<T, 4> rgba_of(const std::vector<T> &pixels, int channels, std::size_t i, T one) {
+template <class T>
+std::array<T, 4> rgba_of(const std::vector<T> &pixels, int channels, std::size_t i, T one) {
   const T *p = pixels.data() + i * static_cast<std::size_t>(channels);
   switch (channels) {
-    case 1: return {p[0], p[0], p[0], one};
-    case 2: return {p[0], p[0], p[0], p[1]};
-    case 3: return {p[0], p[1], p[2], one};
-    default: return {p[0], p[1], p[2], p[3]};
+    case 1:
+      return {p[0], p[0], p[0], one};
+    case 2:
+      return {p[0], p[0], p[0], p[1]};
+    case 3:
+      return {p[0], p[1], p[2], one};
+    default:
+      return {p[0], p[1], p[2], p[3]};
   }
 }
 
@@ -142,8 +147,7 @@ void flatten_textures(const Scene &scene, const TextureLibrary &library, std::si
       const auto [fact, first] = facts.try_emplace(request.image);
       if (first) {
         fact->second = facts_of(std::get<1>(image.pixels));
-        if (fact->second.bad)
-          notices.warning(printable(image.name), std::to_string(fact->second.bad) + " values are not finite; each counts as 0");
+        if (fact->second.bad) notices.warning(printable(image.name), std::to_string(fact->second.bad) + " values are not finite; each counts as 0");
       }
       stored.color = request.color;
       stored.decode = request.color && fact->second.sixteen_bit;
@@ -160,7 +164,8 @@ void flatten_textures(const Scene &scene, const TextureLibrary &library, std::si
     while (stored.page < SUN_TEXTURE_PAGES && stored.words > page_words - filled[stored.page]) stored.page++;
     if (stored.page == SUN_TEXTURE_PAGES)
       throw Error{printable(scene.images[static_cast<std::size_t>(stored.image)].name),
-                  "the textures do not fit into " + std::to_string(SUN_TEXTURE_PAGES) + " buffers of " + std::to_string(page_words * sizeof(uint) >> 20) + " MiB",
+                  "the textures do not fit into " + std::to_string(SUN_TEXTURE_PAGES) + " buffers of " +
+                      std::to_string(page_words * sizeof(uint) >> 20) + " MiB",
                   "use smaller images, or a device whose largest buffer is larger"};
     stored.offset = filled[stored.page];
     filled[stored.page] += stored.words;

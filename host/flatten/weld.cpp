@@ -50,8 +50,8 @@ glm::dvec3 triangle_cross(const glm::vec3 &a, const glm::vec3 &b, const glm::vec
 glm::vec3 unit_vector(const glm::dvec3 &v) {
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   if (!(largest > 0) || !std::isfinite(largest)) return {0, 0, 1};
-  const kernel::vec3 n = kernel::normalize3(
-      kernel::make_vec3(static_cast<float>(v.x / largest), static_cast<float>(v.y / largest), static_cast<float>(v.z / largest)));
+  const kernel::vec3 n =
+      kernel::normalize3(kernel::make_vec3(static_cast<float>(v.x / largest), static_cast<float>(v.y / largest), static_cast<float>(v.z / largest)));
   return {n.x, n.y, n.z};
 }
 

@@ -13,8 +13,8 @@ struct WeldedPrimitive {
   std::size_t dropped = 0;             // triangles without area
 };
 
-// Flat normals where the primitive has none, tangents after Mikkelsen where `tangents` and it has none. Vertices that no triangle uses are left out; the
-// others stand in the order of their first use.
+// Flat normals where the primitive has none, tangents after Mikkelsen where `tangents` and it has none. Vertices that no triangle uses are left out;
+// the others stand in the order of their first use.
 WeldedPrimitive weld(const Primitive &primitive, bool tangents, int uv_set);
 
 // The cross product of two edges, in double. Zero exactly where the corners lie on a line (to double's precision).

@@ -69,7 +69,7 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   Scene scene;
   scene.name = path.stem().string();
   const Value used = root["extensionsUsed"];
-  for (std::size_t i = 0; i < used.size(); i++) scene.extensions.push_back(used[i].text());
+  for (std::size_t i = 0; i < used.size(); i++) scene.extensions.push_back(printable(used[i].text()));
 
   Buffers buffers(root, document.binary);
   Accessors accessors(root, buffers);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 
@@ -12,15 +13,12 @@ namespace {
 
 enum class Mode { triangles = 4, strip = 5, fan = 6 };
 
-bool finite(const glm::vec3 &v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-// Unit length by the exactly rounded operations alone (glm::normalize takes a reciprocal). False where there is no direction in it.
-bool normalize(glm::vec3 &v) {
-  if (!finite(v)) return false;
-  const double x = v.x, y = v.y, z = v.z, length = std::sqrt(x * x + y * y + z * z);  // no overflow: squares of floats in double
-  if (!(length > 1e-30)) return false;
-  v = {static_cast<float>(x / length), static_cast<float>(y / length), static_cast<float>(z / length)};
-  return true;
+// The unit vector along v, by exactly rounded operations alone (glm::normalize takes a reciprocal); nothing where v has no direction.
+// Doubles, so that the squares of floats neither overflow nor vanish.
+std::optional<glm::vec3> unit(const glm::dvec3 &v) {
+  const double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+  if (!(length > 0) || !std::isfinite(length)) return {};
+  return glm::vec3(static_cast<float>(v.x / length), static_cast<float>(v.y / length), static_cast<float>(v.z / length));
 }
 
 // Triangles out of a row of vertex numbers, wound as glTF 2.0, section 3.7.2.1 says.
@@ -40,37 +38,38 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t> &row, M
 
 // Normals are made unit; those without a direction get that of the triangles around them.
 void repair_normals(const Value &value, Primitive &primitive) {
-  std::vector<bool> broken(primitive.normals.size());
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < broken.size(); i++)
-    if (!normalize(primitive.normals[i])) broken[i] = true, count++;
-  if (count == 0) return;
+  std::vector<bool> broken(primitive.normals.size(), false);
+  bool any = false;
+  for (std::size_t i = 0; i < broken.size(); i++) {
+    const std::optional<glm::vec3> normal = unit(glm::dvec3(primitive.normals[i]));
+    primitive.normals[i] = normal.value_or(glm::vec3(0));
+    if (!normal) any = broken[i] = true;
+  }
+  if (!any) return;
   value.warn("normals without a direction were replaced by those of the faces");
-  for (std::size_t i = 0; i < broken.size(); i++)
-    if (broken[i]) primitive.normals[i] = glm::vec3(0);
   const auto &p = primitive.positions;
   for (std::size_t t = 0; t + 2 < primitive.indices.size(); t += 3) {
     const std::uint32_t *corner = &primitive.indices[t];
     if (!broken[corner[0]] && !broken[corner[1]] && !broken[corner[2]]) continue;
-    const glm::dvec3 origin(p[corner[0]]), a = glm::dvec3(p[corner[1]]) - origin, b = glm::dvec3(p[corner[2]]) - origin;
-    glm::vec3 normal(glm::cross(a, b));
-    if (!normalize(normal)) continue;
+    const glm::dvec3 origin(p[corner[0]]);
+    const std::optional<glm::vec3> normal = unit(glm::cross(glm::dvec3(p[corner[1]]) - origin, glm::dvec3(p[corner[2]]) - origin));
+    if (!normal) continue;
     for (int k = 0; k < 3; k++)
-      if (broken[corner[k]]) primitive.normals[corner[k]] += normal;
+      if (broken[corner[k]]) primitive.normals[corner[k]] += *normal;
   }
   for (std::size_t i = 0; i < broken.size(); i++)
-    if (broken[i] && !normalize(primitive.normals[i])) primitive.normals[i] = {0, 0, 1};  // of no triangle that could be seen
+    if (broken[i]) primitive.normals[i] = unit(glm::dvec3(primitive.normals[i])).value_or(glm::vec3(0, 0, 1));  // of no triangle that could be seen
 }
 
 void repair_tangents(const Value &value, Primitive &primitive) {
   for (glm::vec4 &tangent : primitive.tangents) {
-    glm::vec3 direction(tangent);
-    if (!normalize(direction) || std::isnan(tangent.w)) {
+    const std::optional<glm::vec3> direction = unit(glm::dvec3(tangent));
+    if (!direction || std::isnan(tangent.w)) {
       value.warn("tangents without a direction: they are made anew from the texture coordinates");
       primitive.tangents.clear();
       return;
     }
-    tangent = glm::vec4(direction, tangent.w < 0 ? -1.0f : 1.0f);
+    tangent = glm::vec4(*direction, tangent.w < 0 ? -1.0f : 1.0f);
   }
 }
 

@@ -14,7 +14,6 @@ PictureWriter::PictureWriter(std::filesystem::path path, const char *format, con
     OIIO::geterror();
     throw Error(printable(path_.string(), 400), std::string("this build of OpenImageIO cannot write ") + format);
   }
-  output_->threads(1);
   output_->set_ioproxy(&memory_);
   // The library dates a picture that has no date of its own, and two runs would differ.
   OIIO::ImageSpec undated = spec;

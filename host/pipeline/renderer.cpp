@@ -53,9 +53,11 @@ struct Renderer::State {
   Buffer<kernel::Frame> device_frame;
   Buffer<std::int64_t> device_film;
   std::vector<kernel::uint> seen;  // counts as they were read last
+  std::vector<Stage> walk;         // the plan's, without stages that nothing asks for here
 
   State(const Device &d, const Programs &p, const Plan &pl, const RenderSettings &s) : device(d), programs(p), plan(pl), settings(s) {}
   void name_layers();
+  void place_tile(const Tile &tile);
   void take_counts(std::vector<kernel::uint> now);
   std::uint64_t render_launch(StageRunner &runner, std::uint64_t first, std::uint64_t count, std::uint64_t before, std::uint64_t wanted,
                               const std::function<bool(const RenderProgress &)> &progress);
@@ -120,6 +122,11 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if (s.plan.direct) frame.flags |= SUN_FRAME_DIRECT;
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
 
+  for (const Stage stage : s.plan.walk) {
+    const bool layers = s.film.layers.size() > SUN_LAYER_FIRST_OPTIONAL + frame.bounce_layers, lit = frame.emitter_count > 0;
+    if (stage == Stage::first_hit ? layers : stage == Stage::gather_shadow_rays || stage == Stage::occlude ? lit : true) s.walk.push_back(stage);
+  }
+
   const std::size_t bytes_a_pixel = s.film.layers.size() * SUN_FILM_CHANNELS * SUN_FILM_BINS * sizeof(std::int64_t);
   const std::size_t room = device.info().memory > device.allocated() ? (device.info().memory - device.allocated()) / 2 : 0;
   s.tiles = split(settings, bytes_a_pixel, std::min(device.info().max_allocation, room));
@@ -161,11 +168,7 @@ std::uint64_t Renderer::State::render_launch(StageRunner &runner, std::uint64_t 
   bool stopping = false;
   for (;;) {
     for (int step = 0; step < steps_between_looks; step++)
-      for (const Stage stage : plan.walk) {
-        if (stage == Stage::first_hit && film.layers.size() <= SUN_LAYER_FIRST_OPTIONAL + frame.bounce_layers) continue;
-        if ((stage == Stage::gather_shadow_rays || stage == Stage::occlude) && frame.emitter_count == 0) continue;
-        runner.run(stage);
-      }
+      for (const Stage stage : walk) runner.run(stage);
     take_counts(pool->counts.download());
     const std::uint64_t begun = seen[SUN_COUNT_NEXT_PATH];
     if (!stopping && progress && !progress({before + begun, wanted})) {
@@ -179,13 +182,17 @@ std::uint64_t Renderer::State::render_launch(StageRunner &runner, std::uint64_t 
   return count;
 }
 
-std::uint64_t Renderer::State::render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
-                                           const std::function<bool(const RenderProgress &)> &progress) {
+void Renderer::State::place_tile(const Tile &tile) {
   frame.tile_x0 = static_cast<kernel::uint>(tile.x0);
   frame.tile_y0 = static_cast<kernel::uint>(tile.y0);
   frame.tile_width = static_cast<kernel::uint>(tile.width);
   frame.tile_height = static_cast<kernel::uint>(tile.height);
   frame.paths_per_sample = static_cast<kernel::uint>(tile.paths_per_sample());
+}
+
+std::uint64_t Renderer::State::render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
+                                           const std::function<bool(const RenderProgress &)> &progress) {
+  place_tile(tile);
   device_film.fill_zero();
   StageRunner runner(programs, scene, *pool, device_frame, device_film);
   const std::uint64_t at_once = std::max<std::uint64_t>(1, max_paths_of_a_launch / tile.paths_per_sample());
@@ -237,6 +244,58 @@ SampleRange Renderer::render(SampleRange wanted, const std::function<bool(const 
   s.film.clamped = s.counts.clamped;
   s.film.nan = s.counts.nan;
   return done;
+}
+
+struct StageProbe::State {
+  Renderer::State &render;
+  std::unique_ptr<StageRunner> runner;
+};
+
+StageProbe::StageProbe(Renderer &renderer) : state_(new State{*renderer.state_, nullptr}) {
+  Renderer::State &r = state_->render;
+  r.place_tile(r.tiles[0]);
+  r.device_film.fill_zero();
+  r.frame.sample_first = 0;
+  r.device_frame.upload(std::span(&r.frame, 1));
+  r.seen.assign(2 * SUN_COUNT_WORDS, 0);
+  r.seen[SUN_COUNT_PATHS] = static_cast<kernel::uint>(max_paths_of_a_launch);  // the pool never runs dry
+  r.pool->counts.upload(r.seen);
+  state_->runner = std::make_unique<StageRunner>(r.programs, r.scene, *r.pool, r.device_frame, r.device_film);
+}
+StageProbe::~StageProbe() = default;
+StageProbe::StageProbe(StageProbe &&) noexcept = default;
+
+const std::vector<Stage> &StageProbe::walk() const { return state_->render.walk; }
+
+void StageProbe::warm_up(int steps) {
+  for (int step = 0; step < steps; step++)
+    for (const Stage stage : walk()) run(stage);
+}
+
+void StageProbe::run(Stage stage) { state_->runner->run(stage); }
+
+StageState StageProbe::save() const {
+  const Pool &pool = *state_->render.pool;
+  return {pool.paths.download(), pool.status.download(), {pool.rays[0].download(), pool.rays[1].download()}, pool.shadow_queue.download(),
+          pool.counts.download(), pool.hits.download(), pool.shadow_rays.download(), state_->runner->current()};
+}
+
+void StageProbe::restore(const StageState &s) {
+  const Pool &pool = *state_->render.pool;
+  pool.paths.upload(s.paths);
+  pool.status.upload(s.status);
+  for (int i = 0; i < 2; i++) pool.rays[i].upload(s.rays[i]);
+  pool.shadow_queue.upload(s.shadow_queue);
+  pool.counts.upload(s.counts);
+  pool.hits.upload(s.hits);
+  pool.shadow_rays.upload(s.shadow_rays);
+  state_->runner->set_current(s.current);
+}
+
+std::size_t StageProbe::items(Stage stage) const {
+  const std::vector<kernel::uint> counts = state_->render.pool->counts.download();
+  if (stage == Stage::gather_paths) return state_->render.pool->slots;
+  return counts[stage == Stage::occlude ? SUN_COUNT_SHADOW : stage == Stage::generate ? SUN_COUNT_REFILL : SUN_COUNT_LIVE];
 }
 
 const Film &Renderer::film() const { return state_->film; }

@@ -22,8 +22,37 @@ struct RenderProgress {
   std::uint64_t paths_begun = 0, paths_wanted = 0;  // of this call
 };
 
+// A copy of everything on the device that stages change, the film apart.
+struct StageState {
+  std::vector<kernel::uint> paths, status, rays[2], shadow_queue, counts;
+  std::vector<kernel::Hit> hits;
+  std::vector<kernel::ShadowRay> shadow_rays;
+  int current = 0;
+};
+
+class Renderer;
+
+// The stages of a renderer one by one, for the bench.
+class StageProbe {
+ public:
+  explicit StageProbe(Renderer &renderer);
+  ~StageProbe();
+  StageProbe(StageProbe &&) noexcept;
+  const std::vector<Stage> &walk() const;  // that this render runs
+  void warm_up(int steps);                 // whole steps of the walk; the pool stays full
+  void run(Stage stage);
+  StageState save() const;
+  void restore(const StageState &state);
+  std::size_t items(Stage stage) const;    // entries of the queue that the stage works on, as it was run last
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 class Renderer {
  public:
+  StageProbe probe() { return StageProbe(*this); }
   // Builds pool and film on the device. `programs` have to outlive the renderer.
   Renderer(const Device &device, const Programs &programs, const FlatScene &scene, const kernel::Camera &camera, const RenderSettings &settings, const Tuning &tuning);
   ~Renderer();
@@ -40,6 +69,7 @@ class Renderer {
   unsigned pool_slots() const;
 
  private:
+  friend class StageProbe;
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -54,6 +54,8 @@ class StageRunner {
  public:
   StageRunner(const Programs &programs, const DeviceScene &scene, const Pool &pool, const Buffer<kernel::Frame> &frame, const Buffer<std::int64_t> &film);
   void run(Stage stage);
+  int current() const { return current_; }  // which of the pool's two ray queues is the queue now
+  void set_current(int current) { current_ = current; }
 
  private:
   void gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out);

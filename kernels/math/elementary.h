@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own elementary functions, made of + - * / fma sqrt floor alone, so that every device and the host give the same bits.
 // Polynomials are minimax fits of ours for a weight that makes the error relative, their coefficients rounded to float one after the other from
-// the lowest, the rest fitted anew each time. Reductions are after [Cody80]; where x - k * c has to be exact, the leading part of c is short or fma keeps it.
+// the lowest, the rest fitted anew each time. Reductions are after [Cody80]; where x - k * c has to be exact, the leading part of c is short or
+// fma keeps it.
 // The errors stated are the largest seen against long double by tests/kernels/math/elementary_test.cpp, in units in the last place of the result
 // (of 2^-149 where that is subnormal). Subnormal arguments and results are right where the device has subnormals, as the self-test asks.
 // A NaN that goes in comes out; nothing else gives NaN or infinity.

@@ -88,8 +88,10 @@ SUN_FN vec2 sample_2d(const SamplerKey *key, uint_n dimension) {
 // The first number of sample_2d.
 SUN_FN real sample_1d(const SamplerKey *key, uint_n dimension) {
   uint_n seed = hash_step(key->pixel_hash, dimension);
-  if (key->kind == SUN_SAMPLER_SOBOL) return unit_of_hash(reverse_bits(owen_reversed(shuffled_index(key->sample, seed), hash_step(seed, (uint_n)(1u)))));
-  return unit_of_hash(hash_step(hash_step(seed, key->sample), (uint_n)(1u)));
+  uint_n x = key->kind == SUN_SAMPLER_SOBOL
+                 ? reverse_bits(owen_reversed(shuffled_index(key->sample, seed), hash_step(seed, (uint_n)(1u))))
+                 : hash_step(hash_step(seed, key->sample), (uint_n)(1u));
+  return unit_of_hash(x);
 }
 
 // The number that decides whether a ray passes a partly transparent triangle. It belongs to the triangle and not to the order in which the tree is

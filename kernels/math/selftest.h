@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operations that must give the same bits on a device as on the host: sections of them, each a pure function of the inputs that a number stands for.
+// The operations that must give the same bits on a device as on the host: sections of them, each a pure function of the inputs that a number
+// stands for.
 // stages/selftest.cl runs them on the device, host/device/selftest.cpp compiles them as C++. A section's sum over all inputs is a sum of hashes, so
 // neither the order nor LANES shows in it.
 #ifndef SUN_MATH_SELFTEST_H

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the unit square to where points are wanted, each beside its density: per solid angle (of directions, unit length) or per area (disk, triangle).
+// From the unit square to where points are wanted, each beside its density: per solid angle (of directions, unit length) or per area (disk,
+// triangle).
 // Up is +z. All keep strata together; those over disk and hemisphere are concentric [Shirley97].
 #ifndef SUN_MATH_WARP_H
 #define SUN_MATH_WARP_H

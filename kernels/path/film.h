@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds to the integer film (shared/film.h): a contribution is rounded once to its quantum (math/quantum.h) and added as an integer, so that the order of adding never shows.
+// Adds to the integer film (shared/film.h): a contribution is rounded once to its quantum (math/quantum.h) and added as an integer, so that the
+// order of adding never shows.
 // Scalar code, a contribution at a time: the adds are atomic anyway. film_add_lanes goes through the lanes.
 #ifndef SUN_PATH_FILM_H
 #define SUN_PATH_FILM_H
@@ -44,7 +45,8 @@ SUN_FN void film_add_word(FilmWords word, long value) {
 #elif SUN_ATOMICS_64
   atom_add(word, value);
 #else
-  // Two halves modulo 2^32 (a negative value is 2^64 less its size). Each wrap of the low half is seen by exactly one adder, which carries it over; so the
+  // Two halves modulo 2^32 (a negative value is 2^64 less its size). Each wrap of the low half is seen by exactly one adder, which carries it
+  // over; so the
   // sum is right once all have added, whatever their order.
   volatile __global uint *halves = (volatile __global uint *)word;
 #ifdef __ENDIAN_LITTLE__
@@ -72,7 +74,8 @@ SUN_FN void film_add_channel(const FilmView *film, ulong index, float x, uint di
   if (value != 0) film_add_word(film->words + (index * SUN_FILM_BINS + bin), value);
 }
 
-// One contribution of a sample. `pixel` is its place in the tile; `pixel_hash` is hash3_1(seed, x, y) of the whole picture, so that tiles don't matter.
+// One contribution of a sample. `pixel` is its place in the tile; `pixel_hash` is hash3_1(seed, x, y) of the whole picture, so that tiles don't
+// matter.
 SUN_FN void film_add(const FilmView *film, uint layer, uint pixel, uint pixel_hash, uint sample, uint key, float r, float g, float b) {
   if (r == 0.0f && g == 0.0f && b == 0.0f) return;
   uint dither = hash3_1(pixel_hash ^ 0xf117a11eu, sample, key);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choosing an emitter, and the emitters that are no surfaces: punctual lights and the environment. Points on emissive triangles need surfaces: transport/direct.h.
-// Sample numbers are whole multiples of 2^-24 below 1; the tables are built so that what is chosen has exactly the chance that is stated.
+// Choosing an emitter, and the emitters that are no surfaces: punctual lights and the environment. Points on emissive triangles need surfaces:
+// transport/direct.h. Sample numbers are whole multiples of 2^-24 below 1; the tables are built so that what is chosen has exactly the chance that is
+// stated.
 #ifndef SUN_SCENE_EMITTER_H
 #define SUN_SCENE_EMITTER_H
 #include "math/elementary.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures from pages of plain buffers: wrapping, filtering and decoding in defined arithmetic. The records of the lanes differ, so each lane fetches for itself.
+// Textures from pages of plain buffers: wrapping, filtering and decoding in defined arithmetic. The records of the lanes differ, so each lane fetches
+// for itself.
 #ifndef SUN_SCENE_TEXTURE_H
 #define SUN_SCENE_TEXTURE_H
 #include "math/real.h"
@@ -8,9 +9,13 @@
 
 SUN_NAMESPACE_BEGIN
 
-typedef struct TexturePages { const SUN_GLOBAL uint *page[SUN_TEXTURE_PAGES]; } TexturePages;
+typedef struct TexturePages {
+  const SUN_GLOBAL uint *page[SUN_TEXTURE_PAGES];
+} TexturePages;
 
-typedef struct Texel4 { real r, g, b, a; } Texel4;
+typedef struct Texel4 {
+  real r, g, b, a;
+} Texel4;
 
 // floor of one float, whatever LANES is.
 #ifdef __cplusplus
@@ -86,7 +91,8 @@ SUN_FN uint nearest_coordinate(float t, uint size) {
   return i < size ? i : size - 1u;
 }
 
-SUN_FN void sample_texture_lane(const TexturePages *pages, const SUN_GLOBAL Texture *texture, const SUN_GLOBAL float *tables, float u, float v, float out[4]) {
+SUN_FN void sample_texture_lane(const TexturePages *pages, const SUN_GLOBAL Texture *texture, const SUN_GLOBAL float *tables, float u, float v,
+                                float out[4]) {
   u = wrap_coordinate(u, texture->wrap_u);
   v = wrap_coordinate(v, texture->wrap_v);
   if (texture->linear == 0u) {
@@ -109,8 +115,8 @@ SUN_FN void sample_texture_lane(const TexturePages *pages, const SUN_GLOBAL Text
 }
 
 // `texture` has to be an index of `textures` in wanted lanes; the others give 1.
-SUN_FN Texel4 sample_texture(const TexturePages *pages, const SUN_GLOBAL Texture *textures, const SUN_GLOBAL float *tables, uint_n texture, real u, real v,
-                             mask wanted) {
+SUN_FN Texel4 sample_texture(const TexturePages *pages, const SUN_GLOBAL Texture *textures, const SUN_GLOBAL float *tables, uint_n texture, real u,
+                             real v, mask wanted) {
   uint at[LANES];
   int want[LANES];
   float lane_u[LANES], lane_v[LANES], value[4][LANES];
@@ -132,8 +138,8 @@ SUN_FN Texel4 sample_texture(const TexturePages *pages, const SUN_GLOBAL Texture
 }
 
 // What a material's slot shows at these coordinates of the two sets: 1 where it has no texture (ref is SUN_NONE) and in lanes that are not wanted.
-SUN_FN Texel4 sample_slot(const TexturePages *pages, const SUN_GLOBAL Texture *textures, const SUN_GLOBAL TextureRef *refs, const SUN_GLOBAL float *tables,
-                          uint_n ref, const real *uv0, const real *uv1, mask wanted) {
+SUN_FN Texel4 sample_slot(const TexturePages *pages, const SUN_GLOBAL Texture *textures, const SUN_GLOBAL TextureRef *refs,
+                          const SUN_GLOBAL float *tables, uint_n ref, const real *uv0, const real *uv1, mask wanted) {
   mask some = wanted & (ref != (uint_n)(SUN_NONE));
   Texel4 out;
   out.r = out.g = out.b = out.a = (real)(1.0f);

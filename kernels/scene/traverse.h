@@ -66,7 +66,6 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
                           Place *place) {
   const SUN_GLOBAL Instance *instance = &scene->instances[number];
   place->instance = number;
-  place->mirrored = (instance->flags & SUN_INSTANCE_MIRRORED) != 0;
   const uint passed = search->passed_primitive;
   place->first_primitive = number > search->passed_instance ? 0 : number < search->passed_instance || passed >= SUN_ID_PRIMITIVE ? SUN_NONE : passed + 1;
   if (instance->flags & SUN_INSTANCE_IDENTITY) {
@@ -111,19 +110,24 @@ SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *sea
   return 0;
 }
 
+SUN_INLINE Hit hit_of_search(const Search *search) {
+  Hit hit;
+  hit.t = search->best_t;
+  // Rounding may carry the barycentrics out of the triangle, and the sign of a zero is of no use.
+  hit.u = search->u > 0.0f ? search->u < 1.0f ? search->u : 1.0f : 0.0f;
+  const float rest = 1.0f - hit.u;
+  hit.v = search->v > 0.0f ? search->v < rest ? search->v : rest : 0.0f;
+  hit.instance = search->found_instance;
+  hit.primitive = search->found_instance == SUN_NONE ? SUN_NONE : search->best_primitive;
+  hit.pad[0] = hit.pad[1] = hit.pad[2] = 0;
+  return hit;
+}
+
 // The nearest hit: the smallest (t, instance, primitive). Its instance is SUN_NONE, and its t the ray's t_max, where there is none.
 SUN_INLINE Hit closest_hit(const TraceScene *scene, Ray ray, uint want) {
   Search search = begin_search(&ray, want);
   search_scene(scene, &ray, &search, 0);
-  Hit hit;
-  hit.t = search.best_t;
-  hit.u = search.u < 1.0f ? search.u : 1.0f;  // rounding may carry them out of the triangle
-  const float rest = 1.0f - hit.u;
-  hit.v = search.v < rest ? search.v : rest;
-  hit.instance = search.found_instance;
-  hit.primitive = search.found_instance == SUN_NONE ? SUN_NONE : search.best_primitive;
-  hit.pad[0] = hit.pad[1] = hit.pad[2] = 0;
-  return hit;
+  return hit_of_search(&search);
 }
 
 SUN_INLINE int any_hit(const TraceScene *scene, Ray ray, uint want) {

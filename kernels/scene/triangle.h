@@ -51,7 +51,6 @@ typedef struct Search {
 // The instance that is being searched.
 typedef struct Place {
   uint instance;
-  int mirrored;
   Interval world;        // of the instance's world box; [0, inf] for identity instances, whose box contains every triangle's
   float from;            // boxes with far < from hold nothing behind what the ray passed
   uint first_primitive;  // at t == passed_t hits count from this number on
@@ -135,8 +134,8 @@ SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *r
 
   const tri_uint id = TRI_LOAD_ID(leaf);
   const tri_uint primitive = id & SUN_ID_PRIMITIVE;
-  const tri_int behind = place->mirrored ? det > 0.0f : det < 0.0f;
-  ok = ok & !(((id & SUN_ID_SINGLE_SIDED) != 0) & behind);
+  // Seen from behind: clockwise in the mesh's own space, so a mirrored instance's front stays its front.
+  ok = ok & !(((id & SUN_ID_SINGLE_SIDED) != 0) & (det < 0.0f));
   if (search->want == SUN_WANT_OPAQUE) ok = ok & ((id & SUN_ID_PASSABLE) == 0);
   if (search->want == SUN_WANT_PASSABLE) ok = ok & ((id & SUN_ID_PASSABLE) != 0);
 

@@ -29,7 +29,8 @@ void expect_exact(const std::vector<double> &weights) {
   const auto emitters = emitters_of(table);
   std::vector<std::uint32_t> counts(weights.size());
   for (std::uint32_t k = 0; k < (1u << 24); k++) {
-    const kernel::EmitterChoice choice = kernel::choose_emitter(emitters.data(), static_cast<kernel::uint>(emitters.size()), static_cast<float>(k) * 0x1p-24f);
+    const kernel::EmitterChoice choice =
+        kernel::choose_emitter(emitters.data(), static_cast<kernel::uint>(emitters.size()), static_cast<float>(k) * 0x1p-24f);
     ASSERT_LT(choice.index, weights.size());
     counts[choice.index]++;
   }

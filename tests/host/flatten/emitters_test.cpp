@@ -155,7 +155,8 @@ TEST(Lights, SpotsFadeBetweenTheirAngles) {
   const FlatScene flat = flattened(scene);
   for (double angle : {0.0, 0.1, 0.19, 0.3, 0.45, 0.59, 0.61, 1.2, 2.0}) {
     // At distance 5 from the light, `angle` off its axis.
-    const auto sample = kernel::light_sample(flat.lights.data(), 0, kernel::make_vec3(float(5 * std::sin(angle)), 0, float(10 - 5 * std::cos(angle))));
+    const auto sample =
+        kernel::light_sample(flat.lights.data(), 0, kernel::make_vec3(float(5 * std::sin(angle)), 0, float(10 - 5 * std::cos(angle))));
     const double ramp = std::min(std::max((std::cos(angle) - std::cos(0.6)) / (std::cos(0.2) - std::cos(0.6)), 0.0), 1.0);
     EXPECT_NEAR(sample.radiance.y, 4 * ramp * ramp, 1e-4) << angle;
     EXPECT_NEAR(sample.distance, 5, 1e-5);

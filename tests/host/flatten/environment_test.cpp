@@ -49,7 +49,8 @@ Map sky_map() {
   std::vector<float> texels(3 * 24 * 12);
   for (int y = 0; y < 6; y++)
     for (int x = 0; x < 24; x++)
-      for (int c = 0; c < 3; c++) texels[static_cast<std::size_t>(3 * (y * 24 + x) + c)] = 0.1f + 0.05f * float(y) + (x == 3 && y == 2 ? 500.0f : 0.0f);
+      for (int c = 0; c < 3; c++)
+        texels[static_cast<std::size_t>(3 * (y * 24 + x) + c)] = 0.1f + 0.05f * float(y) + (x == 3 && y == 2 ? 500.0f : 0.0f);
   return map_of(24, 12, texels, 0.77f);
 }
 Map even_map() { return map_of(8, 4, std::vector<float>(3 * 8 * 4, 0.7f)); }
@@ -128,7 +129,8 @@ TEST_P(Maps, MultipleImportanceSamplingIsUnbiased) {
   for (int y = 0; y < n; y++)
     for (int x = 0; x < 2 * n; x++) {
       const double theta = pi * (y + 0.5) / n;
-      expected += kernel::environment_radiance(&map.environment, map.texels.data(), direction_of(theta, pi * (x + 0.5) / n)).y * std::sin(theta) * (pi / n) * (pi / n);
+      expected += kernel::environment_radiance(&map.environment, map.texels.data(), direction_of(theta, pi * (x + 0.5) / n)).y * std::sin(theta) *
+                  (pi / n) * (pi / n);
     }
   Random random(5);
   const int samples = 200000;

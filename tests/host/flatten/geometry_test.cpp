@@ -77,7 +77,8 @@ TEST(Geometry, BakedAndInstancedAgree) {
         ASSERT_EQ(position_of(baked, t, k), transform_point(instance, vertex.position));  // to the bit
         glm::vec3 n;
         for (int c = 0; c < 3; c++)
-          n[c] = instance.to_object[c] * vertex.normal[0] + instance.to_object[4 + c] * vertex.normal[1] + instance.to_object[8 + c] * vertex.normal[2];
+          n[c] =
+              instance.to_object[c] * vertex.normal[0] + instance.to_object[4 + c] * vertex.normal[1] + instance.to_object[8 + c] * vertex.normal[2];
         ASSERT_LT(glm::distance(glm::normalize(n), normal_of(baked, t, k)), 1e-5f);
         for (int c = 0; c < 3; c++) {
           ASSERT_GE(position_of(baked, t, k)[c], instance.lower[c]);

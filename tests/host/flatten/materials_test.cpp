@@ -59,7 +59,8 @@ TEST(FlattenMaterials, UnlitShowsItsBaseColourAsEmission) {
   scene.materials[0].unlit = true;
   scene.materials[0].base_color = {0.25f, 0.5f, 1};
   const FlatScene flat = flattened(scene);
-  EXPECT_EQ(flat.materials[0].flags & (SUN_MATERIAL_UNLIT | SUN_MATERIAL_EMISSIVE | SUN_MATERIAL_SPECULAR), SUN_MATERIAL_UNLIT | SUN_MATERIAL_EMISSIVE);
+  EXPECT_EQ(flat.materials[0].flags & (SUN_MATERIAL_UNLIT | SUN_MATERIAL_EMISSIVE | SUN_MATERIAL_SPECULAR),
+            SUN_MATERIAL_UNLIT | SUN_MATERIAL_EMISSIVE);
   EXPECT_EQ(flat.materials[0].emission[1], 0.5f);
   EXPECT_EQ(flat.materials[0].slot[SUN_SLOT_EMISSION], flat.materials[0].slot[SUN_SLOT_BASE_COLOR]);
   EXPECT_NE(flat.materials[0].slot[SUN_SLOT_EMISSION], SUN_NONE);

@@ -108,7 +108,8 @@ double reference_sample(const Image &image, const Texture &texture, bool color, 
   for (int dy = 0; dy < 2; dy++)
     for (int dx = 0; dx < 2; dx++) {
       const double weight = (dx ? x - double(x0) : 1 - (x - double(x0))) * (dy ? y - double(y0) : 1 - (y - double(y0)));
-      sum += weight * reference_texel(image, wrapped(x0 + dx, image.width, texture.wrap_u), wrapped(y0 + dy, image.height, texture.wrap_v), channel, color);
+      sum += weight *
+             reference_texel(image, wrapped(x0 + dx, image.width, texture.wrap_u), wrapped(y0 + dy, image.height, texture.wrap_v), channel, color);
     }
   return sum;
 }
@@ -129,7 +130,8 @@ void expect_agreement(const Image &image, const Texture &texture, double toleran
       const float uv[2] = {u, v}, other[2] = {0, 0};
       const kernel::Texel4 texel = kernel::sample_slot(&pages, flat.textures.data(), flat.texture_refs.data(), flat.tables.data(), ref, uv, other, 1);
       const float value[4] = {texel.r, texel.g, texel.b, texel.a};
-      for (int c = 0; c < 4; c++) ASSERT_NEAR(value[c], reference_sample(image, texture, color, c, u, v), tolerance) << u << " " << v << " channel " << c;
+      for (int c = 0; c < 4; c++)
+        ASSERT_NEAR(value[c], reference_sample(image, texture, color, c, u, v), tolerance) << u << " " << v << " channel " << c;
     }
   }
 }
@@ -208,8 +210,8 @@ TEST(Textures, TransformsAndSecondSetsAreApplied) {
   const FlatScene flat = flattened(scene);
   const kernel::TexturePages pages = pages_of(flat);
   const float unused[2] = {0.9f, 0.9f}, uv[2] = {0.2f, 0.6f};
-  const kernel::Texel4 texel =
-      kernel::sample_slot(&pages, flat.textures.data(), flat.texture_refs.data(), flat.tables.data(), flat.materials[0].slot[SUN_SLOT_BASE_COLOR], unused, uv, 1);
+  const kernel::Texel4 texel = kernel::sample_slot(&pages, flat.textures.data(), flat.texture_refs.data(), flat.tables.data(),
+                                                   flat.materials[0].slot[SUN_SLOT_BASE_COLOR], unused, uv, 1);
   EXPECT_NEAR(texel.g, reference_sample(scene.images[0], scene.textures[0], true, 1, -0.6 + 0.25, 0.4 + 0.125), 1e-6);
 }
 

@@ -60,7 +60,7 @@ class GltfScenes : public testing::Test {
  protected:
   void SetUp() override {
     folder = scenes_folder() / "gltf";
-    if (!std::filesystem::exists(folder / "README.md")) GTEST_SKIP() << "no scenes at " << folder << "; set SUNSTONE_SCENES";
+    if (!std::filesystem::exists(folder / "README.md")) GTEST_SKIP() << "SKIP: no scenes at " << folder << "; set SUNSTONE_SCENES";
     rows = table_rows(folder / "README.md");
   }
   std::filesystem::path folder;

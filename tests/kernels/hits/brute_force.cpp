@@ -40,11 +40,6 @@ struct Bare {
   }
 };
 
-Hit hit_of(const Search &search) {
-  const float u = std::min(search.u, 1.0f);
-  return {search.best_t, u, std::min(search.v, 1.0f - u), search.found_instance, search.found_instance == SUN_NONE ? SUN_NONE : search.best_primitive, {}};
-}
-
 // Calls tell(search, place, t, u, v, primitive) for what counts; it may take the hit into the search.
 template <class Tell> void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell) {
   const Bare bare(flat);
@@ -77,7 +72,7 @@ Hit brute_force(const FlatScene &scene, const TracedRay &from, uint want) {
   const Ray ray = kernel_ray(from);
   Search search = begin_search(&ray, want);
   each_hit(scene, ray, search, [](Search &s, const Place &place, float t, float u, float v, uint primitive) { take_hit(&s, &place, t, u, v, primitive); });
-  return hit_of(search);
+  return hit_of_search(&search);
 }
 
 std::vector<Hit> all_hits(const FlatScene &scene, const TracedRay &from, uint want) {
@@ -87,7 +82,7 @@ std::vector<Hit> all_hits(const FlatScene &scene, const TracedRay &from, uint wa
   each_hit(scene, ray, search, [&](const Search &s, const Place &place, float t, float u, float v, uint primitive) {
     Search one = s;
     take_hit(&one, &place, t, u, v, primitive);
-    hits.push_back(hit_of(one));
+    hits.push_back(hit_of_search(&one));
   });
   std::sort(hits.begin(), hits.end(), [](const Hit &a, const Hit &b) {
     return a.t != b.t ? a.t < b.t : a.instance != b.instance ? a.instance < b.instance : a.primitive < b.primitive;

@@ -77,7 +77,7 @@ class Walk {
         else return {};
       }
     }
-    if (!top_) EXPECT_LE(node.count, 4u);
+    EXPECT_LE(node.count, top_ ? 1u : 4u);
     if (node.count == 0)
       for (uint child = node.first; child < node.first + 2; child++) box.include(visit_binary(child, depth + 1));
     const Box own{vec3(node.lower[0], node.lower[1], node.lower[2]), vec3(node.upper[0], node.upper[1], node.upper[2])};

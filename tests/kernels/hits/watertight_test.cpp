@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "kernels/hits/soup.h"
 #include "kernels/hits/tracer.h"
 
 namespace sunstone::hits {

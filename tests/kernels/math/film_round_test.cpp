@@ -132,7 +132,8 @@ TEST_F(FilmAdd, SumsAreUnbiased) {
   for (uint i = 0; i < n; i++) film_add(&view, 0, 1, hash3(0, i, 0), 0, 0, x, x, x);           // over pixels
   for (uint i = 0; i < n; i++) film_add(&view, 0, 2, hash3(0, 2, 2), 0, i, x, x, x);           // over keys
   for (uint pixel = 0; pixel < 3; pixel++)
-    for (uint channel = 0; channel < 3; channel++) EXPECT_NEAR(static_cast<double>(at(0, pixel, channel, 1)), static_cast<double>(x) * 4096 * n, bound) << pixel << " " << channel;
+    for (uint channel = 0; channel < 3; channel++)
+      EXPECT_NEAR(static_cast<double>(at(0, pixel, channel, 1)), static_cast<double>(x) * 4096 * n, bound) << pixel << " " << channel;
 }
 
 TEST_F(FilmAdd, ChannelsDitherApart) {

@@ -67,7 +67,8 @@ TEST_P(MathDeviceLanes, GivesTheHostsBits) {
     std::vector<kernel::uint> wrong;
     for (kernel::uint i = 0; i < SUN_SELFTEST_INPUTS; i++)
       if (words[s * SUN_SELFTEST_INPUTS + i] != sections[s].run(i)) wrong.push_back(i);
-    EXPECT_TRUE(wrong.empty()) << sections[s].name << ": " << wrong.size() << " of " << SUN_SELFTEST_INPUTS << " differ, the first at input " << wrong.front();
+    EXPECT_TRUE(wrong.empty()) << sections[s].name << ": " << wrong.size() << " of " << SUN_SELFTEST_INPUTS << " differ, the first at input "
+                               << wrong.front();
   }
 }
 
@@ -122,7 +123,8 @@ TEST_P(FilmDevice, SumsUnderContention) {
   const kernel::FilmView view{want.data(), pixels, want_counts.data()};
   for (kernel::uint n = 0; n < total; n++)
     if (n % 5 != 0)
-      kernel::film_add(&view, n & 1, n % pixels, kernel::hash2(n, 4), n >> 3, SUN_FILM_KEY_EMISSION(n & 3), probe_value(n, 0), probe_value(n, 1), probe_value(n, 2));
+      kernel::film_add(&view, n & 1, n % pixels, kernel::hash2(n, 4), n >> 3, SUN_FILM_KEY_EMISSION(n & 3),
+                       probe_value(n, 0), probe_value(n, 1), probe_value(n, 2));
   ASSERT_GT(want_counts[SUN_COUNT_CLAMPED], 0u);
   ASSERT_GT(want_counts[SUN_COUNT_NAN], 0u);
 
@@ -152,7 +154,9 @@ TEST_P(FilmDevice, CarriesAndBorrows) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Atomics, FilmDevice, testing::Values(FilmCase{1, 0}, FilmCase{1, 1}, FilmCase{16, 0}, FilmCase{16, 1}),
-                         [](const auto &info) { return "Lanes" + std::to_string(info.param.lanes) + "Atomics" + (info.param.atomics_64 ? "64" : "32"); });
+                         [](const auto &info) {
+                           return "Lanes" + std::to_string(info.param.lanes) + "Atomics" + (info.param.atomics_64 ? "64" : "32");
+                         });
 
 }  // namespace
 }  // namespace sunstone
