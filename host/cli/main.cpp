@@ -29,6 +29,7 @@ int main(int argc, char **argv) {
   CommandContext context{Notices(show_notice), 0};
   add_render(app, context);
   add_devices(app, context);
+  add_verify(app, context);
   add_info(app, context);
   add_compare(app, context);
   add_merge(app, context);

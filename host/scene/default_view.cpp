@@ -120,13 +120,28 @@ Camera look_camera(glm::vec3 from, glm::vec3 at, glm::vec3 up, float yfov) {
   return camera;
 }
 
+// The overcast sky of the CIE [Moon42], L = (1 + 2 sin elevation) / 3 of the zenith's, over a ground of 1/5. A sky that is the same all around would be
+// a white furnace: white objects could not be seen in it.
+static Environment soft_sky() {
+  constexpr int width = 4, height = 64;
+  std::vector<float> pixels;
+  for (int y = 0; y < height; y++) {
+    float sine, cosine;
+    kernel::sin_cos((static_cast<float>(y) + 0.5f) / height * SUN_PI, &sine, &cosine);  // of the angle from the zenith
+    const float radiance = y < height / 2 ? (1.0f + 2.0f * cosine) / 3.0f : 0.2f;
+    pixels.insert(pixels.end(), width * 3, radiance);
+  }
+  Environment sky;
+  sky.kind = Environment::Kind::map;
+  sky.map = std::make_shared<const Image>(Image{"soft sky", width, height, 3, std::move(pixels)});
+  return sky;
+}
+
 void add_defaults(Scene &scene, float aspect, const std::string &file, Notices &notices) {
   if (!emits(scene)) {
-    scene.environment = Environment{};
-    scene.environment.kind = Environment::Kind::constant;
-    scene.environment.constant = glm::vec3(1);
-    notices.note(file, !scene.lights.empty() ? "its lights are all black; lit by a uniform sky of radiance 1"
-                                                : "has no light, no emissive surface and no environment; lit by a uniform sky of radiance 1");
+    scene.environment = soft_sky();
+    notices.note(file, !scene.lights.empty() ? "its lights are all black; lit by a soft sky (CIE overcast, radiance 1 at the zenith)"
+                                                : "has no light, no emissive surface and no environment; lit by a soft sky (CIE overcast, radiance 1 at the zenith)");
   }
   if (scene.cameras.empty()) {
     const Camera camera = default_camera(scene, aspect);

@@ -15,7 +15,7 @@ Camera default_camera(const Scene &scene, float aspect);
 // --look-from, --look-at, --up, --fov. Throws UsageError where the two points are one or up is parallel.
 Camera look_camera(glm::vec3 from, glm::vec3 at, glm::vec3 up, float yfov);
 
-// Adds the soft uniform sky (radiance 1) and its note where nothing emits; a note for the camera where there is none.
+// Adds a soft sky (CIE overcast, radiance 1 at the zenith) and its note where nothing emits; a note for the camera where there is none.
 void add_defaults(Scene &scene, float aspect, const std::string &file, Notices &notices);
 
 }  // namespace sunstone

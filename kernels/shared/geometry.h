@@ -31,7 +31,7 @@ typedef struct VertexExtra {
 SUN_STATIC_ASSERT(sizeof(VertexExtra) == 48, vertex_extra_is_48_bytes);
 
 #define SUN_INSTANCE_IDENTITY 1u  // to_world is exactly the identity: rays and vertices are used as they are
-#define SUN_INSTANCE_MIRRORED 2u  // determinant < 0: the front is where the winding is clockwise in mesh space
+#define SUN_INSTANCE_MIRRORED 2u  // determinant < 0: the front, counter-clockwise in mesh space, reads clockwise in world space
 
 typedef struct Instance {
   float to_world[12];   // 3x4, row major: world = M * (x, y, z, 1)

@@ -1,2 +1,119 @@
 // SPDX-License-Identifier: Apache-2.0
+// Two unbiased ways to the same picture: `path` (shadow rays, weights, roulette) and `pure` (chance alone) agree at every bounce. Welch's test on means of
+// 8x8 blocks and of the whole picture, over independent seeds; all tests of this file together are Holm-corrected to a false alarm in 10^6 runs.
 #include <gtest/gtest.h>
+
+#include "support/render.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+
+namespace sunstone::test {
+namespace {
+
+constexpr double false_alarms = 1e-6;  // a run of this program
+constexpr int scenes_here = 4;         // each takes its share
+constexpr std::uint32_t seeds = 16;
+
+struct Work {
+  std::uint64_t path_samples, pure_samples;
+};
+
+void expect_agreement(const Case &scene, RenderSettings settings, const Work &work, const char *const integrators[2]) {
+  std::vector<Film> films[2];
+  for (int i = 0; i < 2; i++) {
+    settings.integrator = integrators[i];
+    films[i] = render_seeds(scene, settings, i == 0 ? work.path_samples : work.pure_samples, seeds);
+  }
+  std::vector<double> p;
+  std::vector<std::string> name;
+  for (unsigned depth = 0; depth <= settings.max_depth; depth++) {
+    const std::string layer = "bounce." + std::to_string(depth);
+    std::vector<Window> windows{whole(films[0][0])};
+    for (int y = 0; y + 8 <= settings.height; y += 8)
+      for (int x = 0; x + 8 <= settings.width; x += 8) windows.push_back({x, y, x + 8, y + 8});
+    for (const Window &window : windows)
+      for (int channel = 0; channel < 3; channel++) {
+        const std::vector<double> a = means(films[0], layer, window, channel), b = means(films[1], layer, window, channel);
+        p.push_back(welch(a, b));
+        name.push_back(layer + " at " + std::to_string(window.x0) + "," + std::to_string(window.y0) + (window.x1 - window.x0 > 8 ? " (whole)" : "") + " channel " + std::to_string(channel) + ": " +
+                       integrators[0] + " " + std::to_string(moments(a).mean) + ", " + integrators[1] + " " + std::to_string(moments(b).mean));
+      }
+  }
+  const std::vector<std::size_t> rejected = holm_rejected(p, false_alarms / scenes_here);
+  std::string what;
+  for (std::size_t i = 0; i < rejected.size() && i < 12; i++) what += "\n  " + name[rejected[i]] + ", p = " + std::to_string(p[rejected[i]]);
+  EXPECT_TRUE(rejected.empty()) << rejected.size() << " of " << p.size() << " means differ:" << what;
+  // A test that sees nothing cannot fail: there has to be light at every depth, and noise small enough to tell 5 per cent.
+  for (unsigned depth = 1; depth <= settings.max_depth; depth++) {
+    const std::string layer = "bounce." + std::to_string(depth);
+    for (int i = 0; i < 2; i++) {
+      const Moments m = moments(means(films[i], layer, whole(films[0][0]), 1));
+      EXPECT_GT(m.mean, 0) << layer;
+      if (depth == 1) {
+        EXPECT_LT(std::sqrt(m.variance / seeds), 0.004 * m.mean) << layer << " of " << integrators[i] << " is too noisy";
+      }
+    }
+  }
+}
+
+constexpr const char *path_and_pure[2] = {"path", "pure"};
+
+}  // namespace
+
+TEST(Agree, CornellBox) {
+  expect_agreement(Case::file(scene_file("cornell/cornell.gltf")), picture(64, 64, 5), {32, 256}, path_and_pure);
+}
+
+// A bright map, glossy and rough surfaces, alpha of both kinds, thin glass, solid glass, textured emitters, instances: all but punctual lights, which no
+// path meets by chance.
+TEST(Agree, Everything) {
+  Scene scene = everything();
+  scene.lights.clear();
+  set_sky(scene, sky_map(16, 8, {4, 3.5f, 3}));
+  expect_agreement(Case(std::move(scene)), picture(48, 32, 5), {128, 256}, path_and_pure);
+}
+
+// A sky alone, over a glossy and a matt surface: the environment's pdf and the bsdf's carry all of it.
+TEST(Agree, SkyOverGlossAndMatt) {
+  Scene scene;
+  add(scene, quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}), matt({0.7f, 0.5f, 0.3f}));
+  add(scene, sphere({-0.7f, 0.6f, 0}, 0.6f), metal({0.9f, 0.7f, 0.5f}, 0.45f));
+  Material gloss = metal({0.2f, 0.3f, 0.8f}, 0.3f);
+  gloss.metallic = 0;
+  add(scene, sphere({0.7f, 0.6f, 0}, 0.6f), gloss);
+  set_sky(scene, sky_map(32, 16, {8, 7, 5}));
+  scene.environment.rotation = 0.3f;
+  add_camera(scene, {0, 1.4f, 4}, {0, 0.5f, 0}, 40);
+  expect_agreement(Case(std::move(scene)), picture(48, 32, 4), {128, 256}, path_and_pure);
+}
+
+// Two emitters of very different power and size, so that the chance of being chosen matters; one is an instance, and one lies behind thin glass.
+TEST(Agree, LampsOfDifferentPower) {
+  Scene scene;
+  add(scene, box({-2, 0, -2}, {2, 3, 2}, true), matt({0.6f, 0.6f, 0.6f}));
+  const int small = add(scene, quad({0, 0, 0}, {0.15f, 0, 0}, {0, 0, 0.15f}), lamp({20, 4, 2}), scaled({1, 1, 1}, {-1.2f, 1.5f, 0}));
+  place(scene, small, scaled({2, 1, 2}, {1.2f, 2.5f, 0.5f}));
+  add(scene, quad({0, 2.9f, 0}, {1.2f, 0, 0}, {0, 0, 1.2f}), lamp({0.5f, 0.8f, 1.5f}));
+  add(scene, quad({-1.2f, 1.2f, 0}, {0.5f, 0, 0}, {0, 0, -0.5f}), thin_glass({0.5f, 0.9f, 0.6f}));
+  add_camera(scene, {0, 1.5f, 1.9f}, {0, 1.0f, 0}, 70);
+  expect_agreement(Case(std::move(scene)), picture(48, 32, 4), {64, 256}, path_and_pure);
+}
+
+// The sampler makes no difference to what is expected; neither does the seed.
+TEST(Agree, SobolAndIndependent) {
+  const Case scene = Case::file(scene_file("cornell/cornell.gltf"));
+  RenderSettings settings = picture(32, 32, 3);
+  const std::vector<Film> independent = render_seeds(scene, settings, 128, seeds);
+  std::vector<Film> sobol;
+  for (std::uint32_t seed = 1; seed <= seeds; seed++) {
+    settings.seed = seed;
+    sobol.push_back(render(scene, settings, {0, 128}).film);
+  }
+  for (int channel = 0; channel < 3; channel++) {
+    const std::vector<double> a = means(independent, "beauty", whole(sobol[0]), channel), b = means(sobol, "beauty", whole(sobol[0]), channel);
+    EXPECT_GT(welch(a, b), 1e-7) << moments(a).mean << " and " << moments(b).mean;
+    EXPECT_LT(moments(b).variance, moments(a).variance) << "Sobol' points ought to be less noisy";
+  }
+}
+
+}  // namespace sunstone::test

@@ -142,7 +142,7 @@ TEST(Bits, StoppedAndResumed) {
   const Variant variant = device_variant(test_device().info());
   Programs programs(test_device(), variant);
   Tuning tuning;
-  tuning.pool = 1600;  // of 1536 paths a sample: it stops in between
+  tuning.pool = 64;  // of 1536 paths a sample: it stops in between
   Renderer renderer(test_device(), programs, scene().flat(variant.layout), scene().camera(48, 32), settings(), tuning);
   SampleRange done{0, 0};
   int calls = 0;

@@ -68,9 +68,9 @@ double welch(std::span<const double> a, std::span<const double> b) {
   const Moments ma = moments(a), mb = moments(b);
   const double va = ma.variance / static_cast<double>(ma.count), vb = mb.variance / static_cast<double>(mb.count), difference = ma.mean - mb.mean;
   // What rounding to floats and to the film's quantum may do to values that are no random numbers at all.
-  const double rounding = 1e-6 * std::max(std::abs(ma.mean), std::abs(mb.mean)) + 1e-9;
-  if (std::abs(difference) <= rounding) return 1;
-  if (!(va + vb > 0)) return 0;
+  const double largest = std::max(std::abs(ma.mean), std::abs(mb.mean));
+  if (std::abs(difference) <= 1e-6 * largest + 1e-9) return 1;
+  if (!(va + vb > 1e-24 * largest * largest)) return 0;
   const double freedom =
       (va + vb) * (va + vb) / (va * va / static_cast<double>(ma.count - 1) + vb * vb / static_cast<double>(mb.count - 1));
   return student_two_sided(difference / std::sqrt(va + vb), freedom);
