@@ -73,8 +73,8 @@ void print_json(const Options &options, const Image &image, const Comparison &c,
 }
 
 void print_text(const Comparison &c, const std::vector<std::string> &beyond) {
-  std::printf("rmse     %.6g\nrelmse   %.6g\npsnr     %.4f dB\nflip     %.6f\nlargest  %.6g at %d,%d\n", c.rmse, c.relmse, c.psnr, c.flip, c.largest, c.largest_x,
-              c.largest_y);
+  std::printf("rmse     %.6g\nrelmse   %.6g\npsnr     %.4f dB\nflip     %.6f\nlargest  %.6g at %d,%d\n", c.rmse, c.relmse, c.psnr, c.flip, c.largest,
+              c.largest_x, c.largest_y);
   if (c.bad_pixels) std::printf("bad      %zu pixels are not finite\n", c.bad_pixels);
   for (const std::string &text : beyond) std::printf("beyond tolerance: %s\n", text.c_str());
 }
@@ -83,7 +83,8 @@ void compare(const Options &options, CommandContext &context) {
   std::vector<Tolerance> tolerances;
   for (const std::string &text : options.tolerances) tolerances.push_back(parse_tolerance(text));
   // Who sets a limit wants to hear of pixels that no limit can measure.
-  const bool bad_is_given = std::any_of(tolerances.begin(), tolerances.end(), [](const Tolerance &t) { return std::string(t.metric->name) == "bad"; });
+  const bool bad_is_given =
+      std::any_of(tolerances.begin(), tolerances.end(), [](const Tolerance &t) { return std::string(t.metric->name) == "bad"; });
   if (!tolerances.empty() && !bad_is_given) tolerances.push_back(parse_tolerance("bad=0"));
 
   const Content &content = load_content();
@@ -107,12 +108,14 @@ void compare(const Options &options, CommandContext &context) {
 
 void add_compare(CLI::App &app, CommandContext &context) {
   auto options = std::make_shared<Options>();
-  CLI::App *command = app.add_subcommand("compare", "Measure how far a picture is from a reference: RMSE, relMSE, PSNR, FLIP, the largest difference");
+  CLI::App *command =
+      app.add_subcommand("compare", "Measure how far a picture is from a reference: RMSE, relMSE, PSNR, FLIP, the largest difference");
   command->add_option("image", options->image, "The picture")->required()->type_name("PICTURE");
   command->add_option("reference", options->reference, "What it should be, of the same size")->required()->type_name("PICTURE");
   command
       ->add_option("--tolerance", options->tolerances,
-                   "Exit with 1 where a metric is beyond X: rmse relmse flip largest bad at most, psnr at least. May be given again; pixels that are not finite are beyond any")
+                   "Exit with 1 where a metric is beyond X: rmse relmse flip largest bad at most, psnr at least. May be given again; pixels that are "
+                   "not finite are beyond any")
       ->type_name("METRIC=X")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

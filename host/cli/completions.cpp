@@ -63,7 +63,11 @@ void collect(const CLI::App &app, Command &command, std::vector<Command> &all) {
       command.takes_files = command.takes_files || names_file(type);
     }
     if (!option->nonpositional()) continue;
-    Flag flag{{}, first_line(option->get_description()), takes_value, takes_value && names_file(type), takes_value ? choices_in(type) : std::vector<std::string>{}};
+    Flag flag{{},
+              first_line(option->get_description()),
+              takes_value,
+              takes_value && names_file(type),
+              takes_value ? choices_in(type) : std::vector<std::string>{}};
     for (const std::string &name : option->get_snames()) flag.names.push_back("-" + name);
     for (const std::string &name : option->get_lnames()) flag.names.push_back("--" + name);
     command.flags.push_back(flag);
@@ -126,7 +130,8 @@ std::string walk(const std::vector<Command> &all) {
   std::string text = "      case \"$at:$word\" in\n";
   for (const Command &command : all)
     for (const auto &[name, description] : command.commands)
-      text += "        " + shell_quoted(command.path + ":" + name) + ") at=" + shell_quoted(command.path.empty() ? name : command.path + " " + name) + " ;;\n";
+      text += "        " + shell_quoted(command.path + ":" + name) + ") at=" + shell_quoted(command.path.empty() ? name : command.path + " " + name) +
+              " ;;\n";
   text += "        " + option_patterns(all, [](const Flag &flag) { return flag.takes_value; }) + ") skip=1 ;;\n      esac\n";
   return text;
 }
@@ -224,7 +229,8 @@ std::string zsh_script(const std::vector<Command> &all) {
       for (const std::string &name : flag.names) options.push_back(zsh_entry(name, flag.description));
     for (const auto &[name, description] : command.commands) words.push_back(zsh_entry(name, description));
     for (const std::string &choice : command.choices) words.push_back(zsh_entry(choice, ""));
-    text += "    " + shell_quoted(command.path) + ")\n      if [[ $PREFIX == -* ]]; then entries=(" + joined(options) + "); _describe option entries; return; fi\n";
+    text += "    " + shell_quoted(command.path) + ")\n      if [[ $PREFIX == -* ]]; then entries=(" + joined(options) +
+            "); _describe option entries; return; fi\n";
     if (!words.empty()) text += "      entries=(" + joined(words) + "); _describe command entries\n";
     if (command.takes_files) text += "      _files\n";
     text += "      ;;\n";
@@ -257,7 +263,8 @@ std::string fish_script(const std::vector<Command> &all) {
       "    switch \"$at:$word\"\n";
   for (const Command &command : all) {
     for (const auto &[name, description] : command.commands)
-      text += "      case " + fish_quoted(command.path + ":" + name) + "\n        set at " + fish_quoted(command.path.empty() ? name : command.path + " " + name) + "\n";
+      text += "      case " + fish_quoted(command.path + ":" + name) + "\n        set at " +
+              fish_quoted(command.path.empty() ? name : command.path + " " + name) + "\n";
     for (const Flag &flag : command.flags)
       if (flag.takes_value)
         for (const std::string &name : flag.names) text += "      case " + fish_quoted(command.path + ":" + name) + "\n        set skip 1\n";
@@ -276,7 +283,8 @@ std::string fish_script(const std::vector<Command> &all) {
     if (!command.choices.empty()) text += here + " -a " + fish_quoted(joined(command.choices)) + "\n";
     for (const Flag &flag : command.flags) {
       text += here;
-      for (const std::string &name : flag.names) text += name.starts_with("--") ? " -l " + fish_quoted(name.substr(2)) : " -s " + fish_quoted(name.substr(1));
+      for (const std::string &name : flag.names)
+        text += name.starts_with("--") ? " -l " + fish_quoted(name.substr(2)) : " -s " + fish_quoted(name.substr(1));
       if (flag.takes_value) text += flag.is_file ? " -r -F" : " -x";
       if (!flag.choices.empty()) text += " -a " + fish_quoted(joined(flag.choices));
       text += " -d " + fish_quoted(flag.description) + "\n";

@@ -44,7 +44,8 @@ Film sum_of(const std::vector<std::string> &names) {
   std::vector<Part> parts;
   for (const std::string &name : names) {
     Film film = read_film(name);
-    check_overlap(parts, film);
+    // A film of another scene or setting is refused by add_film, for that reason, whichever samples it holds.
+    if (!parts.empty() && film_difference(sum, film).empty()) check_overlap(parts, film);
     parts.push_back({film.name, film.samples});
     if (parts.size() == 1)
       sum = std::move(film);
@@ -77,8 +78,8 @@ void merge(Options &options) {
     std::printf("%s\n", result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return;
   }
-  std::printf("%zu film%s, samples %s (%llu per pixel), film hash %s\n", options.films.size(), options.films.size() == 1 ? "" : "s", show_samples(film.samples).c_str(),
-              static_cast<unsigned long long>(film.sample_count()), film_hash(film).hex().c_str());
+  std::printf("%zu film%s, samples %s (%llu per pixel), film hash %s\n", options.films.size(), options.films.size() == 1 ? "" : "s",
+              show_samples(film.samples).c_str(), static_cast<unsigned long long>(film.sample_count()), film_hash(film).hex().c_str());
   for (const std::string &name : options.outputs) std::printf("%s\n", printable(name, 400).c_str());
 }
 

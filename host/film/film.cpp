@@ -58,7 +58,8 @@ class IntegerHasher {
 };
 
 void hash_window(Hasher &hasher, const Film &film) {
-  for (const int number : {film.picture_width, film.picture_height, film.x0, film.y0, film.x1, film.y1}) hasher.value(static_cast<std::int64_t>(number));
+  for (const int number : {film.picture_width, film.picture_height, film.x0, film.y0, film.x1, film.y1})
+    hasher.value(static_cast<std::int64_t>(number));
   hasher.value(film.sample_count());
 }
 
@@ -140,11 +141,13 @@ std::vector<float> film_beauty(const Film &film) {
   if (samples == 0) return beauty;
   const std::vector<std::int64_t> &even = film.layers.at(SUN_LAYER_EVEN).values, &odd = film.layers.at(SUN_LAYER_ODD).values;
   for (std::size_t i = 0; i < values; i++)
-    beauty[i] = static_cast<float>(film_number(wrapping_sum(even[2 * i], odd[2 * i]), wrapping_sum(even[2 * i + 1], odd[2 * i + 1])) / static_cast<double>(samples));
+    beauty[i] = static_cast<float>(film_number(wrapping_sum(even[2 * i], odd[2 * i]), wrapping_sum(even[2 * i + 1], odd[2 * i + 1])) /
+                                   static_cast<double>(samples));
   return beauty;
 }
 
-// With means E of m and O of n samples, whose variance s^2 is one sample's: E[(E-O)^2] = s^2 (1/m + 1/n), and the mean of all has variance s^2 / (m+n).
+// With means E of m and O of n samples, whose variance s^2 is one sample's: E[(E-O)^2] = s^2 (1/m + 1/n), and the mean of all has variance s^2 /
+// (m+n).
 double film_variance(const Film &film, std::size_t pixel, int channel) {
   const Halves halves = halves_of(film.samples);
   if (halves.even == 0 || halves.odd == 0) return std::numeric_limits<double>::infinity();
@@ -176,15 +179,18 @@ std::string film_difference(const Film &a, const Film &b) {
   if (a.scene_hash != b.scene_hash) return "scenes differ: " + differs("the hash", printable(a.scene_hash), printable(b.scene_hash));
   const std::string settings = settings_difference(a, b, in_a, in_b);
   if (!settings.empty()) return "settings differ: " + settings;
-  if (a.picture_width != b.picture_width || a.picture_height != b.picture_height) return "pictures differ: " + differs("the size", show_size(a), show_size(b));
-  if (a.x0 != b.x0 || a.y0 != b.y0 || a.x1 != b.x1 || a.y1 != b.y1) return "pictures differ: " + differs("the crop window", show_window(a), show_window(b));
+  if (a.picture_width != b.picture_width || a.picture_height != b.picture_height)
+    return "pictures differ: " + differs("the size", show_size(a), show_size(b));
+  if (a.x0 != b.x0 || a.y0 != b.y0 || a.x1 != b.x1 || a.y1 != b.y1)
+    return "pictures differ: " + differs("the crop window", show_window(a), show_window(b));
   for (const FilmLayer &layer : a.layers)
     if (!b.find(layer.name)) return "layers differ: " + printable(layer.name) + " is missing" + in_b;
   for (const FilmLayer &layer : b.layers) {
     const FilmLayer *mine = a.find(layer.name);
     if (!mine) return "layers differ: " + printable(layer.name) + " is missing" + in_a;
     if (mine->values.size() != layer.values.size())
-      return "layers differ: " + differs((printable(layer.name) + "'s length").c_str(), std::to_string(mine->values.size()), std::to_string(layer.values.size()));
+      return "layers differ: " +
+             differs((printable(layer.name) + "'s length").c_str(), std::to_string(mine->values.size()), std::to_string(layer.values.size()));
   }
   return {};
 }

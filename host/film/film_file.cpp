@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The .film format. Every size is checked against the file's own length before anything is allocated for it, and the hash before anything is believed.
+// The .film format. Every size is checked against the file's own length before anything is allocated for it, and the hash before anything is
+// believed.
 #include "film/film_file.h"
 
 #include <bit>
@@ -70,7 +71,8 @@ class Reader {
   explicit Reader(const std::filesystem::path &path) : place_(shown(path)) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) throw Error(place_, error && error != std::errc::no_such_file_or_directory ? error.message() : "no such file");
+    if (!std::filesystem::exists(status))
+      throw Error(place_, error && error != std::errc::no_such_file_or_directory ? error.message() : "no such file");
     if (!std::filesystem::is_regular_file(status)) throw Error(place_, "is not a regular file");
     length_ = std::filesystem::file_size(path, error);
     if (error) throw Error(place_, error.message());
@@ -121,7 +123,8 @@ json header_of(const Film &film) {
 class Header {
  public:
   Header(const std::string &text, const Reader &reader) : reader_(reader) {
-    if (text.find('\0') != std::string::npos) reader_.fail("its header is not JSON: it holds a zero byte");  // where the parser would stop, and be content
+    if (text.find('\0') != std::string::npos)
+      reader_.fail("its header is not JSON: it holds a zero byte");  // where the parser would stop, and be content
     std::vector<std::set<std::string>> keys;
     const auto strict = [&](int depth, json::parse_event_t event, json &parsed) {
       if (depth > 3) reader_.fail("its header is nested too deeply");
@@ -182,7 +185,8 @@ class Header {
 // All of a film but its integers. Every number is bounded here, so that the products that follow cannot overflow.
 Film film_of(Header &header, const Reader &reader) {
   if (const std::uint64_t written = header.number("version"); written != version)
-    reader.fail("was written by a newer version of sunstone: its format is " + std::to_string(written) + ", and this one reads " + std::to_string(version));
+    reader.fail("was written by a newer version of sunstone: its format is " + std::to_string(written) + ", and this one reads " +
+                std::to_string(version));
   Film film;
   const std::vector<std::uint64_t> picture = header.numbers("picture", 2), window = header.numbers("window", 4);
   if (picture[0] < 1 || picture[1] < 1 || picture[0] > largest_side || picture[1] > largest_side) header.wrong("picture");
@@ -203,7 +207,8 @@ Film film_of(Header &header, const Reader &reader) {
     if (!entry.is_string() || !names.insert(entry.get<std::string>()).second || names.size() > most_layers) header.wrong("layers");
     film.layers.push_back({entry.get<std::string>(), {}});
   }
-  if (film.layers.size() < SUN_LAYER_FIRST_OPTIONAL || film.layers[SUN_LAYER_EVEN].name != "beauty.even" || film.layers[SUN_LAYER_ODD].name != "beauty.odd")
+  if (film.layers.size() < SUN_LAYER_FIRST_OPTIONAL || film.layers[SUN_LAYER_EVEN].name != "beauty.even" ||
+      film.layers[SUN_LAYER_ODD].name != "beauty.odd")
     header.wrong("layers");
   film.scene_hash = header.text("scene_hash");
   film.settings = header.texts("settings");
@@ -220,11 +225,13 @@ Film film_of(Header &header, const Reader &reader) {
 void write_film(const std::filesystem::path &path, const Film &film) {
   const std::size_t values = film.pixels() * SUN_FILM_CHANNELS * SUN_FILM_BINS;
   for (const FilmLayer &layer : film.layers)
-    if (layer.values.size() != values) throw Error(shown(path), "could not be written: layer " + printable(layer.name) + " does not fit the film's window");
+    if (layer.values.size() != values)
+      throw Error(shown(path), "could not be written: layer " + printable(layer.name) + " does not fit the film's window");
   // A file name may hold bytes that are no UTF-8; JSON may not.
   const std::string header = header_of(film).dump(-1, ' ', false, json::error_handler_t::replace);
   const std::uint64_t header_length = header.size();
-  if (header_length > longest_header) throw Error(shown(path), "could not be written: its header would have " + std::to_string(header_length) + " bytes");
+  if (header_length > longest_header)
+    throw Error(shown(path), "could not be written: its header would have " + std::to_string(header_length) + " bytes");
   AtomicFile atomic(path);
   Writer writer(atomic.temporary(), shown(path));
   writer.bytes(magic, sizeof magic);
@@ -257,7 +264,8 @@ Film read_film(const std::filesystem::path &path) {
   const std::uint64_t values = static_cast<std::uint64_t>(film.pixels()) * SUN_FILM_CHANNELS * SUN_FILM_BINS;
   const std::uint64_t expected = fixed_bytes + header_length + values * sizeof(std::int64_t) * film.layers.size();
   if (reader.length() != expected)
-    reader.fail((reader.length() < expected ? "is cut off: " : "is too long: ") + std::to_string(reader.length()) + " bytes, but its header needs " + std::to_string(expected));
+    reader.fail((reader.length() < expected ? "is cut off: " : "is too long: ") + std::to_string(reader.length()) + " bytes, but its header needs " +
+                std::to_string(expected));
   try {
     for (FilmLayer &layer : film.layers) {
       layer.values.resize(values);

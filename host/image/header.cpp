@@ -69,7 +69,8 @@ PictureHeader hdr_header(const Bytes &bytes) {
   PictureHeader header{"hdr", "hdr"};
   std::size_t at = 0;
   for (std::string line = line_at(bytes, at); !line.empty() && line != "\r"; line = line_at(bytes, at))
-    if (line.starts_with("FORMAT=") && line.find("rgbe") == std::string::npos) bytes.fail("is a Radiance picture of \"" + printable(line) + "\"; rgbe is read");
+    if (line.starts_with("FORMAT=") && line.find("rgbe") == std::string::npos)
+      bytes.fail("is a Radiance picture of \"" + printable(line) + "\"; rgbe is read");
   const std::string size = line_at(bytes, at);
   const auto number = [&](std::size_t from, const char *what) {
     std::int64_t value = -1;
@@ -120,13 +121,15 @@ PictureHeader bmp_header(const Bytes &bytes) {
   const std::int64_t height = rows < 0 ? -rows : rows;
   check_picture_size(bytes, width, height);
   if (coding != 0 && coding != 3) bytes.fail("is a compressed BMP; uncompressed ones are read");
-  if (bits != 1 && bits != 4 && bits != 8 && bits != 16 && bits != 24 && bits != 32) bytes.fail("is a BMP of " + std::to_string(bits) + " bits a pixel");
+  if (bits != 1 && bits != 4 && bits != 8 && bits != 16 && bits != 24 && bits != 32)
+    bytes.fail("is a BMP of " + std::to_string(bits) + " bits a pixel");
   const std::int64_t stride = (width * bits + 31) / 32 * 4;
   if (pixels_at > bytes.size() || height > static_cast<std::int64_t>(bytes.size() - pixels_at) / stride) bytes.cut_off();
   if (bits <= 8) {
     const std::uint32_t named = old ? 0 : bytes.u32_little(46);
     const std::uint32_t colours = named ? named : 1u << bits;
-    if (colours > 1u << bits) bytes.fail("is a broken BMP: a palette of " + std::to_string(colours) + " colours for " + std::to_string(bits) + " bits");
+    if (colours > 1u << bits)
+      bytes.fail("is a broken BMP: a palette of " + std::to_string(colours) + " colours for " + std::to_string(bits) + " bits");
     if (14 + std::size_t(info) + colours * std::size_t(old ? 3 : 4) > pixels_at) bytes.fail("is a broken BMP: its palette runs into its pixels");
     for (std::int64_t y = 0; colours < 1u << bits && y < height; y++)
       for (std::int64_t x = 0; x < width; x++) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the first bytes of a picture say, read by us before any library sees the file: its format, its size, and whether the rest is there.
-// OpenImageIO's readers trust their headers (HDR ends in bad_alloc, paletted BMP and TGA read past their palettes), so they only get what passed here.
+// OpenImageIO's readers trust their headers (HDR ends in bad_alloc, paletted BMP and TGA read past their palettes), so they only get what passed
+// here.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +20,8 @@ struct PictureHeader {
 // Throws Error{name, ...} for an unknown format, a size of zero or beyond max_image_pixels, and for what can be seen to be cut off or broken.
 PictureHeader read_picture_header(std::span<const std::byte> data, const std::string &name);
 
-// A PNG with its picture and nothing else: the chunks that matter, each checked against its sum. libpng tells the terminal, not us, what it thinks of profiles
-// and of broken chunks, and never gets to see them. Throws Error{name, ...} where the file is cut off or a sum is wrong.
+// A PNG with its picture and nothing else: the chunks that matter, each checked against its sum. libpng tells the terminal, not us, what it thinks of
+// profiles and of broken chunks, and never gets to see them. Throws Error{name, ...} where the file is cut off or a sum is wrong.
 std::vector<std::byte> plain_png(std::span<const std::byte> data, const std::string &name);
 
 // Bytes with every read checked against the end; reading past it throws Error{name, "is cut off ..."}.

@@ -58,7 +58,8 @@ PictureHeader read_exr_header(const Bytes &bytes) {
         }
       } else if (name == "tiles" && length >= 9) {
         const std::int64_t x = bytes.u32_little(at), y = bytes.u32_little(at + 4);
-        if (x == 0 || y == 0 || x > 8192 || y > 8192) bytes.fail("its tiles are " + std::to_string(x) + " x " + std::to_string(y) + "; 1 to 8192 are read");
+        if (x == 0 || y == 0 || x > 8192 || y > 8192)
+          bytes.fail("its tiles are " + std::to_string(x) + " x " + std::to_string(y) + "; 1 to 8192 are read");
       } else if (name == "channels" && length > 1 << 16) {
         bytes.fail("has too many channels");
       } else if (name == "type" && length >= 4 && bytes.starts_with("deep", 4, at)) {

@@ -36,7 +36,8 @@ std::vector<std::byte> plain_png(std::span<const std::byte> data, const std::str
     const std::string_view kind(reinterpret_cast<const char *>(data.data()) + at + 4, 4);
     const bool kept = kind == "IHDR" || kind == "PLTE" || kind == "tRNS" || kind == "IDAT" || kind == "IEND";
     if (kept) {
-      if (checksum(data.subspan(at + 4, length + 4)) != bytes.u32_big(at + 8 + length)) bytes.fail("is a broken PNG: the sum over its pixels or its header is wrong");
+      if (checksum(data.subspan(at + 4, length + 4)) != bytes.u32_big(at + 8 + length))
+        bytes.fail("is a broken PNG: the sum over its pixels or its header is wrong");
       out.insert(out.end(), data.begin() + static_cast<std::ptrdiff_t>(at), data.begin() + static_cast<std::ptrdiff_t>(at + 12 + length));
     } else if (!(kind[0] & 0x20)) {
       bytes.fail("is a PNG with a critical part of an unknown kind");

@@ -65,7 +65,8 @@ std::vector<T> read_pixels(OIIO::ImageInput &input, const OIIO::ImageSpec &spec,
   return pixels;
 }
 
-// OpenImageIO 2.4's WebP reader multiplies alpha in, whatever it is asked. Dividing brings the colours back but for rounding; behind no alpha they are lost.
+// OpenImageIO 2.4's WebP reader multiplies alpha in, whatever it is asked. Dividing brings the colours back but for rounding; behind no alpha they
+// are lost.
 void divide_by_alpha(std::vector<std::uint8_t> &pixels) {
   for (std::size_t i = 0; i + 3 < pixels.size(); i += 4) {
     const unsigned alpha = pixels[i + 3];

@@ -11,10 +11,14 @@ namespace sunstone {
 namespace {
 
 float usable(float value, RadianceFaults &faults) {
-  if (std::isnan(value)) faults.nan++;
-  else if (std::isinf(value)) faults.infinite++;
-  else if (value < 0) faults.negative++;
-  else return value;
+  if (std::isnan(value))
+    faults.nan++;
+  else if (std::isinf(value))
+    faults.infinite++;
+  else if (value < 0)
+    faults.negative++;
+  else
+    return value;
   return 0;
 }
 

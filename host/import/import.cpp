@@ -49,7 +49,8 @@ Scene import_scene(const std::filesystem::path &path, const ImportOptions &optio
   if (std::filesystem::is_directory(status)) throw Error(shown, "is a folder, not a scene");
   const bool gltf = suffix == ".gltf" || suffix == ".glb";
   if (!gltf && suffix != ".obj")
-    throw Error(shown, suffix.empty() ? "has no suffix that names its format" : "\"" + printable(suffix) + "\" is not a format of scenes that is read",
+    throw Error(shown,
+                suffix.empty() ? "has no suffix that names its format" : "\"" + printable(suffix) + "\" is not a format of scenes that is read",
                 "scenes are .gltf, .glb or .obj");
   if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0 && !error) throw Error(shown, "is empty");
   Scene scene = gltf ? import_gltf(path, options, notices) : import_obj(path, options, notices);
@@ -58,7 +59,8 @@ Scene import_scene(const std::filesystem::path &path, const ImportOptions &optio
   return scene;
 }
 
-std::filesystem::path resolve_resource(const std::filesystem::path &folder, const std::string &name, const ImportOptions &options, const std::string &place) {
+std::filesystem::path resolve_resource(const std::filesystem::path &folder, const std::string &name, const ImportOptions &options,
+                                       const std::string &place) {
   const std::string shown = "\"" + printable(name) + "\"";
   const char *const hint = "--allow-outside reads it all the same";
   if (name.empty()) throw Error(place, "names no file");
@@ -90,15 +92,16 @@ Environment import_environment(const std::string &text, Notices &notices) {
   }
   std::error_code error;
   if (text.empty() || !std::filesystem::exists(text, error)) {
-    if (text.find(',') != std::string::npos) throw UsageError("--env", "\"" + printable(text) + "\" is neither a file nor three numbers", "for example --env 1,1,1");
+    if (text.find(',') != std::string::npos)
+      throw UsageError("--env", "\"" + printable(text) + "\" is neither a file nor three numbers", "for example --env 1,1,1");
     throw Error(printable(text, 400), "no such file", "--env takes a picture, or three numbers: 1,1,1");
   }
   environment.kind = Environment::Kind::map;
   RadianceFaults faults;
   environment.map = std::make_shared<const Image>(radiance_map(read_image(text), faults));
   if (faults.nan || faults.infinite || faults.negative)
-    notices.warning(environment.map->name, "values treated as 0: " + std::to_string(faults.nan) + " NaN, " + std::to_string(faults.infinite) + " infinite, " +
-                                               std::to_string(faults.negative) + " negative");
+    notices.warning(environment.map->name, "values treated as 0: " + std::to_string(faults.nan) + " NaN, " + std::to_string(faults.infinite) +
+                                               " infinite, " + std::to_string(faults.negative) + " negative");
   return environment;
 }
 

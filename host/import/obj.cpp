@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// OBJ and MTL -> Scene. The text is surveyed and guarded (obj_guard.h, obj_mtl_guard.cpp), read by tinyobjloader (obj_loader.h), and made into one mesh of a
-// primitive a material (obj_mesh.h) with materials after docs/obj-materials.md.
+// OBJ and MTL -> Scene. The text is surveyed and guarded (obj_guard.h, obj_mtl_guard.cpp), read by tinyobjloader (obj_loader.h), and made into one
+// mesh of a primitive a material (obj_mesh.h) with materials after docs/obj-materials.md.
 #include <algorithm>
 
 #include "base/error.h"
@@ -35,14 +35,17 @@ Scene import_obj(const std::filesystem::path &path, const ImportOptions &options
   std::vector<bool> used(libraries.names.size());
   bool uses_default = false;
   for (int &material : obj.faces.materials) {
-    if (material >= 0) used[material] = true;
-    else uses_default = true;
+    if (material >= 0)
+      used[material] = true;
+    else
+      uses_default = true;
   }
   ObjTextures textures(path, options, scene, notices);
   scene.materials = make_obj_materials(libraries, obj, used, textures, file);
   if (uses_default) {
     const int number = static_cast<int>(scene.materials.size());
-    std::replace_if(obj.faces.materials.begin(), obj.faces.materials.end(), [](int material) { return material < 0; }, number);
+    std::replace_if(
+        obj.faces.materials.begin(), obj.faces.materials.end(), [](int material) { return material < 0; }, number);
     scene.materials.push_back(default_obj_material());
   }
   ObjMesh built = build_obj_mesh(obj.faces);

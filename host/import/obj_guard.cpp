@@ -10,18 +10,31 @@ namespace sunstone {
 
 namespace {
 
-enum class Statement { position, texture_coordinate, normal, face, line_or_point, free_form, material, library, smoothing, command, ignored, unknown };
+enum class Statement {
+  position,
+  texture_coordinate,
+  normal,
+  face,
+  line_or_point,
+  free_form,
+  material,
+  library,
+  smoothing,
+  command,
+  ignored,
+  unknown
+};
 
 Statement statement(std::string_view word) {
   static const std::map<std::string_view, Statement> known = [] {
-    std::map<std::string_view, Statement> m{{"v", Statement::position},        {"vt", Statement::texture_coordinate}, {"vn", Statement::normal},
-                                            {"f", Statement::face},            {"fo", Statement::face},               {"l", Statement::line_or_point},
-                                            {"p", Statement::line_or_point},   {"curv", Statement::free_form},        {"curv2", Statement::free_form},
-                                            {"surf", Statement::free_form},    {"usemtl", Statement::material},       {"mtllib", Statement::library},
-                                            {"s", Statement::smoothing},       {"csh", Statement::command},           {"call", Statement::command}};
-    for (const char *word : {"g",    "o",    "t",     "vp",    "vw",    "deg",    "bmat",       "step",      "cstype",   "parm",     "trim", "hole",  "scrv",
-                             "sp",   "end",  "con",   "mg",    "bevel", "lod",    "c_interp",   "d_interp",  "shadow_obj", "trace_obj", "ctech", "stech", "maplib",
-                             "usemap", "bsp", "bzp",  "cdc",   "cdp",   "res"})
+    std::map<std::string_view, Statement> m{
+        {"v", Statement::position},      {"vt", Statement::texture_coordinate}, {"vn", Statement::normal},       {"f", Statement::face},
+        {"fo", Statement::face},         {"l", Statement::line_or_point},       {"p", Statement::line_or_point}, {"curv", Statement::free_form},
+        {"curv2", Statement::free_form}, {"surf", Statement::free_form},        {"usemtl", Statement::material}, {"mtllib", Statement::library},
+        {"s", Statement::smoothing},     {"csh", Statement::command},           {"call", Statement::command}};
+    for (const char *word : {"g",         "o",     "t",     "vp",     "vw",     "deg", "bmat",  "step", "cstype",   "parm",     "trim",
+                             "hole",      "scrv",  "sp",    "end",    "con",    "mg",  "bevel", "lod",  "c_interp", "d_interp", "shadow_obj",
+                             "trace_obj", "ctech", "stech", "maplib", "usemap", "bsp", "bzp",   "cdc",  "cdp",      "res"})
       m[word] = Statement::ignored;
     return m;
   }();
@@ -49,18 +62,39 @@ class Guard {
       std::string_view rest = line;
       const std::string_view word = take_word(rest);
       switch (statement(word)) {
-        case Statement::position: position(rest); break;
-        case Statement::texture_coordinate: texture_coordinate(rest); break;
-        case Statement::normal: normal(rest); break;
-        case Statement::face: face(without_comment(rest)); break;
-        case Statement::material: material(trim(rest)); break;
-        case Statement::smoothing: smoothing(without_comment(rest)); break;
-        case Statement::command: fault("\"csh\" and \"call\" are never run"); break;
-        case Statement::line_or_point: fault("lines and points are not rendered"); break;
-        case Statement::free_form: fault("free-form curves and surfaces are not rendered"); break;
-        case Statement::unknown: fault("not a statement of OBJ: ignored"); break;
+        case Statement::position:
+          position(rest);
+          break;
+        case Statement::texture_coordinate:
+          texture_coordinate(rest);
+          break;
+        case Statement::normal:
+          normal(rest);
+          break;
+        case Statement::face:
+          face(without_comment(rest));
+          break;
+        case Statement::material:
+          material(trim(rest));
+          break;
+        case Statement::smoothing:
+          smoothing(without_comment(rest));
+          break;
+        case Statement::command:
+          fault("\"csh\" and \"call\" are never run");
+          break;
+        case Statement::line_or_point:
+          fault("lines and points are not rendered");
+          break;
+        case Statement::free_form:
+          fault("free-form curves and surfaces are not rendered");
+          break;
+        case Statement::unknown:
+          fault("not a statement of OBJ: ignored");
+          break;
         case Statement::library:
-        case Statement::ignored: break;
+        case Statement::ignored:
+          break;
       }
     }
     return std::move(out_);
@@ -161,10 +195,14 @@ class Guard {
     if (!parse_index(parts[0], positions_, corner.position)) return false;
     if (count > 1 && !parts[1].empty() && !parse_index(parts[1], texture_coordinates_, corner.texture_coordinate)) return false;
     if (count > 2 && !parts[2].empty() && !parse_index(parts[2], normals_, corner.normal)) return false;
-    if (corner.position == 0) reason = "a face with the index 0 (they begin at 1): dropped";
-    else if (corner.position < 0 || corner.position > static_cast<std::int64_t>(survey_.positions)) reason = "a face with an index beyond the vertices: dropped";
-    else if (bad(bad_positions_, corner.position, positions_)) reason = "a face with a vertex that is not three finite numbers: dropped";
-    else return true;
+    if (corner.position == 0)
+      reason = "a face with the index 0 (they begin at 1): dropped";
+    else if (corner.position < 0 || corner.position > static_cast<std::int64_t>(survey_.positions))
+      reason = "a face with an index beyond the vertices: dropped";
+    else if (bad(bad_positions_, corner.position, positions_))
+      reason = "a face with a vertex that is not three finite numbers: dropped";
+    else
+      return true;
     return false;
   }
 
@@ -255,14 +293,29 @@ ObjSurvey survey_obj(std::string_view text) {
   for (std::string_view line; reader.next(line, number);) {
     std::string_view rest = line;
     switch (statement(take_word(rest))) {
-      case Statement::position: survey.positions++; break;
-      case Statement::texture_coordinate: survey.texture_coordinates++; break;
-      case Statement::normal: survey.normals++; break;
-      case Statement::face: survey.faces++; break;
-      case Statement::line_or_point: survey.lines_and_points++; break;
-      case Statement::free_form: survey.free_form++; break;
-      case Statement::library: survey.libraries.push_back({std::string(trim(rest)), number}); break;
-      default: break;
+      case Statement::position:
+        survey.positions++;
+        break;
+      case Statement::texture_coordinate:
+        survey.texture_coordinates++;
+        break;
+      case Statement::normal:
+        survey.normals++;
+        break;
+      case Statement::face:
+        survey.faces++;
+        break;
+      case Statement::line_or_point:
+        survey.lines_and_points++;
+        break;
+      case Statement::free_form:
+        survey.free_form++;
+        break;
+      case Statement::library:
+        survey.libraries.push_back({std::string(trim(rest)), number});
+        break;
+      default:
+        break;
     }
   }
   return survey;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pass over an OBJ file that comes before tinyobjloader. It gives the loader nothing but statements that it reads rightly. Left to itself, tinyobjloader 2.0
-// rc10 reads "nan", "0x10" and "" as 0, lets indices point anywhere, gives up on the whole file at an index of 0, counts a face's corners in a byte, cuts names of
-// materials at their first blank, and does not know continued lines.
+// The pass over an OBJ file that comes before tinyobjloader. It gives the loader nothing but statements that it reads rightly. Left to itself,
+// tinyobjloader 2.0 rc10 reads "nan", "0x10" and "" as 0, lets indices point anywhere, gives up on the whole file at an index of 0, counts a face's
+// corners in a byte, cuts names of materials at their first blank, and does not know continued lines.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -31,8 +31,8 @@ struct GuardedObj {
 
 ObjSurvey survey_obj(std::string_view text);
 
-// Drops what is broken and says so, by line. `materials` gives the number of a material by its name. Faces keep the texture coordinates and normals that are
-// there; indices become positive.
+// Drops what is broken and says so, by line. `materials` gives the number of a material by its name. Faces keep the texture coordinates and normals
+// that are there; indices become positive.
 GuardedObj guard_obj(std::string_view text, const ObjSurvey &survey, const std::map<std::string, int> &materials, LineFaults &faults);
 
 }  // namespace sunstone

@@ -12,9 +12,9 @@ namespace sunstone {
 
 namespace {
 
-constexpr float diffuse_default = 0.8f;     // where neither Kd nor map_Kd is given
-constexpr float exponent_default = 10;      // where Ks is given without Ns
-constexpr float mirror_exponent = 100;      // from here on, mirrors and glass are perfectly smooth
+constexpr float diffuse_default = 0.8f;  // where neither Kd nor map_Kd is given
+constexpr float exponent_default = 10;   // where Ks is given without Ns
+constexpr float mirror_exponent = 100;   // from here on, mirrors and glass are perfectly smooth
 
 glm::vec3 color(const tinyobj::real_t *values) { return {values[0], values[1], values[2]}; }
 float largest(const glm::vec3 &v) { return std::max(std::max(v.x, v.y), v.z); }
@@ -41,11 +41,16 @@ class Converter {
     if (has("norm")) m_.normal_scale = from_.normal_texopt.bump_multiplier;
     const int model = has("illum") ? from_.illum : 2;
     const bool glass = model == 4 || model == 6 || model == 7 || model == 9;
-    if (glass) make_glass();
-    else if (has("Pr") || has("Pm") || has("map_Pr") || has("map_Pm")) make_metallic_roughness();
-    else if (model == 3 || model == 5 || model == 8) make_mirror();
-    else if (model == 0 || model == 1) make_diffuse();
-    else make_glossy();
+    if (glass)
+      make_glass();
+    else if (has("Pr") || has("Pm") || has("map_Pr") || has("map_Pm"))
+      make_metallic_roughness();
+    else if (model == 3 || model == 5 || model == 8)
+      make_mirror();
+    else if (model == 0 || model == 1)
+      make_diffuse();
+    else
+      make_glossy();
     if (!glass) {
       m_.alpha = has("d") || has("Tr") ? from_.dissolve : 1;
       if (m_.alpha < 1 || has("map_d")) m_.alpha_mode = AlphaMode::blend;
@@ -56,7 +61,9 @@ class Converter {
  private:
   bool has(const char *statement) const { return given_.count(statement) > 0; }
   float exponent() const { return has("Ns") ? from_.shininess : exponent_default; }
-  float smooth_roughness() const { return has("Pr") ? from_.roughness : !has("Ns") || from_.shininess >= mirror_exponent ? 0 : roughness_of(from_.shininess); }
+  float smooth_roughness() const {
+    return has("Pr") ? from_.roughness : !has("Ns") || from_.shininess >= mirror_exponent ? 0 : roughness_of(from_.shininess);
+  }
 
   void specular(const glm::vec3 &f0) {
     m_.f0 = f0;
@@ -126,8 +133,9 @@ std::vector<Material> make_obj_materials(const GuardedMtl &libraries, const Load
       const std::string place = file + ": material \"" + printable(m.name, 60) + "\"";
       const bool mirror = m.metallic == 1 && m.transmission == 0 && libraries.given[i].count("Pm") == 0 && libraries.given[i].count("map_Pm") == 0;
       // A mirror's colour is Ks, glass's is Tf, so map_Ks and nothing belong to them.
-      if (m.transmission == 0) m.base_color_texture = mirror ? textures.color(from.specular_texname, from.specular_texopt, place)
-                                                             : textures.color(from.diffuse_texname, from.diffuse_texopt, place);
+      if (m.transmission == 0)
+        m.base_color_texture = mirror ? textures.color(from.specular_texname, from.specular_texopt, place)
+                                      : textures.color(from.diffuse_texname, from.diffuse_texopt, place);
       if (!mirror && m.f90 > 0) m.specular_color_texture = textures.color(from.specular_texname, from.specular_texopt, place);
       m.emission_texture = textures.color(from.emissive_texname, from.emissive_texopt, place);
       m.normal_texture = textures.color(from.normal_texname, from.normal_texopt, place);

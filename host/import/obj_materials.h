@@ -13,13 +13,13 @@
 
 namespace sunstone {
 
-// The statements of all libraries of a scene, made fit for tinyobjloader: a material is called by its number, colours have three numbers, textures have their
-// options before their names, all of them in full.
+// The statements of all libraries of a scene, made fit for tinyobjloader: a material is called by its number, colours have three numbers, textures
+// have their options before their names, all of them in full.
 struct GuardedMtl {
   std::string text;
-  std::vector<std::string> names;              // of materials
-  std::vector<std::set<std::string>> given;    // statements that a material has: the loader does not tell absent ones from zeros
-  std::map<std::string, int> numbers;          // by name
+  std::vector<std::string> names;            // of materials
+  std::vector<std::set<std::string>> given;  // statements that a material has: the loader does not tell absent ones from zeros
+  std::map<std::string, int> numbers;        // by name
 };
 
 // Adds one library's text. A name that is already there is left out, with a warning.

@@ -15,7 +15,9 @@ namespace {
 
 constexpr int smooth_normal = -2, face_normal = -1;  // instead of a normal's number
 
-glm::vec3 triple(std::span<const float> values, int i) { return {values[3 * std::size_t(i)], values[3 * std::size_t(i) + 1], values[3 * std::size_t(i) + 2]}; }
+glm::vec3 triple(std::span<const float> values, int i) {
+  return {values[3 * std::size_t(i)], values[3 * std::size_t(i) + 1], values[3 * std::size_t(i) + 2]};
+}
 
 // A vertex of a primitive is a corner's three indices and, where the normal is made, whose it is: its smoothing group's or its face's.
 struct Key {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pass over a material library that comes before tinyobjloader. The loader takes missing numbers for 0, does not tell what was given from what was not,
-// and reads a texture's name as a number where an option has fewer arguments than it could have ("-o 0.1 name.jpg").
+// The pass over a material library that comes before tinyobjloader. The loader takes missing numbers for 0, does not tell what was given from what
+// was not, and reads a texture's name as a number where an option has fewer arguments than it could have ("-o 0.1 name.jpg").
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -103,7 +103,8 @@ class TextureParser {
 
   // Options come before the name; those that come after it are found by their words. A name may hold blanks.
   TextureLine run(std::string_view rest) {
-    while (option(rest)) {}
+    while (option(rest)) {
+    }
     rest = trim(rest);
     std::size_t end = rest.size();
     for (std::size_t at = rest.find(" -"); at != rest.npos && end == rest.size(); at = rest.find(" -", at + 1)) {
@@ -111,7 +112,8 @@ class TextureParser {
       if (known(take_word(after))) end = at;
     }
     std::string_view after = rest.substr(end);
-    while (option(after)) {}
+    while (option(after)) {
+    }
     if (!trim(after).empty()) faults_.add("what follows a texture's options was not understood", line_);
     out_.name = portable_name(rest.substr(0, end));
     return std::move(out_);
@@ -119,7 +121,8 @@ class TextureParser {
 
  private:
   static bool known(std::string_view word) {
-    static const std::set<std::string_view> words{"-blendu", "-blendv", "-boost", "-bm", "-cc", "-clamp", "-colorspace", "-imfchan", "-mm", "-o", "-s", "-t", "-texres", "-type"};
+    static const std::set<std::string_view> words{"-blendu",  "-blendv", "-boost", "-bm", "-cc", "-clamp",  "-colorspace",
+                                                  "-imfchan", "-mm",     "-o",     "-s",  "-t",  "-texres", "-type"};
     return words.count(word) > 0;
   }
 
@@ -140,21 +143,33 @@ class TextureParser {
     const std::string_view word = take_word(after);
     if (!known(word)) return false;
     float ignored[3];
-    if (word == "-o") needed(numbers(after, out_.offset, 3));
-    else if (word == "-s") needed(numbers(after, out_.scale, 3));
-    else if (word == "-bm") needed(numbers(after, &out_.bump, 1));
-    else if (word == "-texres") needed(numbers(after, ignored, 1));
-    else if (word == "-t") unsupported("turbulence (-t)", needed(numbers(after, ignored, 3)));
-    else if (word == "-boost") unsupported("sharpening (-boost)", needed(numbers(after, ignored, 1)));
-    else if (word == "-mm") unsupported("a range of values (-mm)", needed(numbers(after, ignored, 2)));
+    if (word == "-o")
+      needed(numbers(after, out_.offset, 3));
+    else if (word == "-s")
+      needed(numbers(after, out_.scale, 3));
+    else if (word == "-bm")
+      needed(numbers(after, &out_.bump, 1));
+    else if (word == "-texres")
+      needed(numbers(after, ignored, 1));
+    else if (word == "-t")
+      unsupported("turbulence (-t)", needed(numbers(after, ignored, 3)));
+    else if (word == "-boost")
+      unsupported("sharpening (-boost)", needed(numbers(after, ignored, 1)));
+    else if (word == "-mm")
+      unsupported("a range of values (-mm)", needed(numbers(after, ignored, 2)));
     else {
       const std::string_view value = take_word(after);
       needed(!value.empty());
-      if (word == "-clamp") out_.clamp = value == "on";
-      else if (word == "-imfchan") out_.channel = value.empty() ? '\0' : value[0];
-      else if (word == "-type") unsupported("a kind of reflection map (-type)", true);
-      else if (word == "-cc") unsupported("colour correction (-cc)", value == "on");
-      else if (word == "-colorspace") unsupported("a colour space (-colorspace)", true);
+      if (word == "-clamp")
+        out_.clamp = value == "on";
+      else if (word == "-imfchan")
+        out_.channel = value.empty() ? '\0' : value[0];
+      else if (word == "-type")
+        unsupported("a kind of reflection map (-type)", true);
+      else if (word == "-cc")
+        unsupported("colour correction (-cc)", value == "on");
+      else if (word == "-colorspace")
+        unsupported("a colour space (-colorspace)", true);
     }
     rest = after;
     return true;
@@ -188,10 +203,12 @@ class Guard {
         continue;
       }
       const Key *key = find_key(word);
-      if (!key) fault("not a statement of MTL: ignored");
+      if (!key)
+        fault("not a statement of MTL: ignored");
       else if (!open_) {
         if (!skipping_) fault("a statement before the first newmtl: ignored");
-      } else statement(*key, key->canonical ? key->canonical : word, rest);
+      } else
+        statement(*key, key->canonical ? key->canonical : word, rest);
     }
   }
 
@@ -202,7 +219,8 @@ class Guard {
     open_ = false;
     skipping_ = true;
     if (name.empty()) return fault("a material without a name: ignored");
-    if (!out_.numbers.emplace(std::string(name), static_cast<int>(out_.names.size())).second) return fault("a material of a name that was there before: the first one is used");
+    if (!out_.numbers.emplace(std::string(name), static_cast<int>(out_.names.size())).second)
+      return fault("a material of a name that was there before: the first one is used");
     out_.text += "newmtl " + std::to_string(out_.names.size()) + "\n";
     out_.names.emplace_back(name);
     out_.given.emplace_back();
@@ -211,12 +229,23 @@ class Guard {
 
   void statement(const Key &key, std::string_view name, std::string_view rest) {
     switch (key.value) {
-      case Value::color: color(key, name, without_comment(rest)); break;
-      case Value::number: number(key, name, without_comment(rest)); break;
-      case Value::model: model(without_comment(rest)); break;
-      case Value::texture: texture(name, rest); break;
-      case Value::unsupported: fault(unsupported_text(name)); break;
-      case Value::ignored: break;
+      case Value::color:
+        color(key, name, without_comment(rest));
+        break;
+      case Value::number:
+        number(key, name, without_comment(rest));
+        break;
+      case Value::model:
+        model(without_comment(rest));
+        break;
+      case Value::texture:
+        texture(name, rest);
+        break;
+      case Value::unsupported:
+        fault(unsupported_text(name));
+        break;
+      case Value::ignored:
+        break;
     }
   }
 
@@ -233,7 +262,8 @@ class Guard {
       const std::optional<float> value = parse_number(word);
       if (!value) {
         const bool other = word == "spectral" || word == "xyz";
-        return fault(other ? "colours given as spectra or as xyz are not read: ignored" : std::string(name) + " that is not made of finite numbers: ignored");
+        return fault(other ? "colours given as spectra or as xyz are not read: ignored"
+                           : std::string(name) + " that is not made of finite numbers: ignored");
       }
       values.push_back(*value);
     }
@@ -295,9 +325,12 @@ class Guard {
 std::vector<std::string> library_names(const std::string &rest) {
   std::vector<std::string> names(1);
   for (std::size_t i = 0; i < rest.size(); i++) {
-    if (rest[i] == '\\' && i + 1 < rest.size() && rest[i + 1] == ' ') names.back() += rest[++i];
-    else if (rest[i] == ' ' || rest[i] == '\t') names.emplace_back();
-    else names.back() += rest[i];
+    if (rest[i] == '\\' && i + 1 < rest.size() && rest[i + 1] == ' ')
+      names.back() += rest[++i];
+    else if (rest[i] == ' ' || rest[i] == '\t')
+      names.emplace_back();
+    else
+      names.back() += rest[i];
   }
   std::erase(names, "");
   return names;
@@ -313,7 +346,8 @@ class LibraryReader {
       const std::string place = shown_ + ":" + std::to_string(library.line);
       const std::vector<std::string> words = library_names(library.rest);
       if (words.empty()) notices_.warning(place, "mtllib names no file");
-      if (words.size() > 1 && is_file(portable_name(library.rest))) read(portable_name(library.rest), place);
+      if (words.size() > 1 && is_file(portable_name(library.rest)))
+        read(portable_name(library.rest), place);
       else
         for (const std::string &word : words) read(portable_name(word), place);
     }
@@ -333,7 +367,8 @@ class LibraryReader {
   void read(const std::string &name, const std::string &place) {
     if (seen_.size() > most_libraries) return;
     if (!seen_.insert(name).second) return;
-    if (seen_.size() > most_libraries) return notices_.warning(place, "names more than " + std::to_string(most_libraries) + " material libraries: the rest is not read");
+    if (seen_.size() > most_libraries)
+      return notices_.warning(place, "names more than " + std::to_string(most_libraries) + " material libraries: the rest is not read");
     try {
       if (names_drive(name) && !options_.allow_outside) throw Error(place, "it is an absolute path and is not read");
       const std::filesystem::path path = resolve_resource(folder_, name, options_, place);

@@ -70,7 +70,8 @@ std::optional<float> parse_number(std::string_view word) {
   double value = 0;
   const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
   if (result.ptr != word.data() + word.size() || word.empty()) return std::nullopt;
-  if (result.ec == std::errc::result_out_of_range && word.find("e-") == std::string_view::npos && word.find("E-") == std::string_view::npos) return std::nullopt;
+  if (result.ec == std::errc::result_out_of_range && word.find("e-") == std::string_view::npos && word.find("E-") == std::string_view::npos)
+    return std::nullopt;
   if (result.ec == std::errc::invalid_argument || !(std::abs(value) <= 3.4028234e38)) return std::nullopt;
   return static_cast<float>(value);
 }

@@ -30,8 +30,10 @@ Image picked(const Image &like, std::initializer_list<std::tuple<const Image *, 
   out.height = like.height;
   out.channels = static_cast<int>(sources.size());
   const std::size_t count = std::size_t(like.width) * like.height;
-  if (like.is_float()) out.pixels = pick<float>(count, 1.0f, sources);
-  else out.pixels = pick<std::uint8_t>(count, 255, sources);
+  if (like.is_float())
+    out.pixels = pick<float>(count, 1.0f, sources);
+  else
+    out.pixels = pick<std::uint8_t>(count, 255, sources);
   return out;
 }
 

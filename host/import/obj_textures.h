@@ -32,10 +32,10 @@ class ObjTextures {
   const ImportOptions &options_;
   Scene &scene_;
   Notices &notices_;
-  std::map<std::string, int> images_;                 // by name; -1: not there
-  std::map<std::tuple<int, char>, int> grey_;         // by picture and channel
-  std::map<std::pair<int, int>, int> joined_;         // by the pictures of roughness and metallic
-  std::map<std::pair<int, bool>, int> textures_;      // by picture and -clamp
+  std::map<std::string, int> images_;             // by name; -1: not there
+  std::map<std::tuple<int, char>, int> grey_;     // by picture and channel
+  std::map<std::pair<int, int>, int> joined_;     // by the pictures of roughness and metallic
+  std::map<std::pair<int, bool>, int> textures_;  // by picture and -clamp
 };
 
 }  // namespace sunstone

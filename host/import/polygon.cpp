@@ -9,7 +9,8 @@ namespace sunstone {
 
 namespace {
 
-// Tests of a point against an ear, for one polygon: beyond them the rest is cut without looking. A polygon of 10,000 corners, half of them reflex, stays below.
+// Tests of a point against an ear, for one polygon: beyond them the rest is cut without looking. A polygon of 10,000 corners, half of them reflex,
+// stays below.
 constexpr std::size_t most_tests = std::size_t(1) << 28;
 
 double cross(const glm::dvec2 &a, const glm::dvec2 &b, const glm::dvec2 &c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
@@ -46,8 +47,10 @@ class EarClipper {
         std::size_t seen = 0;
         for (; seen < left && !ear; seen++, found = next_[found])
           if ((ear = fits(found, effort))) break;
-        if (!ear) found = at;
-        else if (effort == 2) partition = false;
+        if (!ear)
+          found = at;
+        else if (effort == 2)
+          partition = false;
       }
       partition = partition && ear;
       at = cut(found);
@@ -66,7 +69,8 @@ class EarClipper {
     return area > 0;
   }
 
-  // No corner of the rest lies in the triangle. A reflex corner on its rim blocks it too; one at a tip of the triangle (the twin at a bridge's end) does not.
+  // No corner of the rest lies in the triangle. A reflex corner on its rim blocks it too; one at a tip of the triangle (the twin at a bridge's end)
+  // does not.
   bool empty(std::uint32_t i) {
     if (reflex_ == 0) return true;
     const std::uint32_t before = previous_[i], after = next_[i];
@@ -144,7 +148,8 @@ bool triangulate_polygon(std::span<const glm::vec3> corners, std::vector<std::ui
     const bool convex = cross(points[0], points[1], points[2]) > 0 && cross(points[1], points[2], points[3]) > 0 &&
                         cross(points[2], points[3], points[0]) > 0 && cross(points[3], points[0], points[1]) > 0;
     if (convex) {
-      const bool even = glm::distance(glm::dvec3(corners[0]), glm::dvec3(corners[2])) <= glm::distance(glm::dvec3(corners[1]), glm::dvec3(corners[3]));
+      const bool even =
+          glm::distance(glm::dvec3(corners[0]), glm::dvec3(corners[2])) <= glm::distance(glm::dvec3(corners[1]), glm::dvec3(corners[3]));
       const std::array<std::uint32_t, 6> cut = even ? std::array<std::uint32_t, 6>{0, 1, 2, 0, 2, 3} : std::array<std::uint32_t, 6>{0, 1, 3, 1, 2, 3};
       triangles.insert(triangles.end(), cut.begin(), cut.end());
       return true;

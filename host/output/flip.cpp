@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LDR-FLIP [Andersson20]. Colours are blurred as the eye blurs them (contrast sensitivity), compared in a uniform space where large distances count too,
-// and the difference is raised where edges or points differ. All filters separate into rows and columns; pictures end in a repeated border.
+// LDR-FLIP [Andersson20]. Colours are blurred as the eye blurs them (contrast sensitivity), compared in a uniform space where large distances count
+// too, and the difference is raised where edges or points differ. All filters separate into rows and columns; pictures end in a repeated border.
 #include "output/flip.h"
 
 #include <algorithm>
@@ -113,8 +113,8 @@ class Filter {
 
 using Planes = std::array<Plane, 3>;
 
-// The eye's point spread of each opponent channel: sums of Gaussians a exp(-b f^2) over frequencies, hence a sqrt(pi / b) exp(-pi^2 d^2 / b) over degrees.
-// [Andersson20 table 1]
+// The eye's point spread of each opponent channel: sums of Gaussians a exp(-b f^2) over frequencies, hence a sqrt(pi / b) exp(-pi^2 d^2 / b) over
+// degrees. [Andersson20 table 1]
 struct Gaussian {
   double a, b;
 };

@@ -28,7 +28,8 @@ struct Channel {
 
 using Terms = std::vector<const FilmLayer *>;
 
-void add_three(std::vector<Channel> &channels, const std::string &prefix, const char *letters, const Terms &terms, Channel::Kind kind = Channel::Kind::mean) {
+void add_three(std::vector<Channel> &channels, const std::string &prefix, const char *letters, const Terms &terms,
+               Channel::Kind kind = Channel::Kind::mean) {
   for (int c = 0; c < SUN_FILM_CHANNELS; c++) channels.push_back({kind, prefix + letters[c], terms, c});
 }
 
@@ -104,7 +105,8 @@ void add_metadata(OIIO::ImageSpec &spec, const Film &film) {
 void write_layers(const std::filesystem::path &path, const Film &film) {
   const std::size_t values = film.pixels() * SUN_FILM_CHANNELS * SUN_FILM_BINS;
   for (const FilmLayer &layer : film.layers)
-    if (layer.values.size() != values) throw Error(printable(path.string(), 400), "could not be written: layer " + printable(layer.name) + " does not fit the film's window");
+    if (layer.values.size() != values)
+      throw Error(printable(path.string(), 400), "could not be written: layer " + printable(layer.name) + " does not fit the film's window");
   const std::vector<Channel> channels = channels_of(film);
 
   OIIO::ImageSpec spec(film.width(), film.height(), static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);

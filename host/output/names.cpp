@@ -26,7 +26,8 @@ void check_picture_name(const std::filesystem::path &path) {
   if (std::find(known.begin(), known.end(), suffix) != known.end()) return;
   std::string list;
   for (const std::string &name : known) list += (list.empty() ? "" : " ") + name;
-  throw UsageError(printable(path.string(), 400), suffix.empty() ? "has no suffix to tell the format by" : "the suffix " + printable(suffix) + " is not known",
+  throw UsageError(printable(path.string(), 400),
+                   suffix.empty() ? "has no suffix to tell the format by" : "the suffix " + printable(suffix) + " is not known",
                    "pictures are written as " + list);
 }
 

@@ -34,7 +34,9 @@ void write_picture(const std::filesystem::path &path, const Film &film, const Vi
 
 // OpenEXR and Radiance files hold light, all others what a screen shows.
 static bool is_linear(std::span<const std::byte> data) {
-  const auto begins = [&](std::string_view magic) { return data.size() >= magic.size() && std::memcmp(data.data(), magic.data(), magic.size()) == 0; };
+  const auto begins = [&](std::string_view magic) {
+    return data.size() >= magic.size() && std::memcmp(data.data(), magic.data(), magic.size()) == 0;
+  };
   return begins("\x76\x2f\x31\x01") || begins("#?");
 }
 
@@ -52,7 +54,8 @@ Image read_picture(const std::filesystem::path &path) {
     const double value = static_cast<double>(i) / 255;
     from_byte[i] = static_cast<float>(linear ? value : srgb_decode(value));
   }
-  const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height), channels = static_cast<std::size_t>(image.channels);
+  const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+                    channels = static_cast<std::size_t>(image.channels);
   std::vector<float> rgb(pixels * 3);
   for (std::size_t i = 0; i < pixels; i++)
     for (std::size_t c = 0; c < 3; c++) {
@@ -60,7 +63,8 @@ Image read_picture(const std::filesystem::path &path) {
       if (const auto *bytes = std::get_if<std::vector<std::uint8_t>>(&image.pixels))
         rgb[i * 3 + c] = from_byte[(*bytes)[at]];
       else
-        rgb[i * 3 + c] = linear ? std::get<std::vector<float>>(image.pixels)[at] : static_cast<float>(srgb_decode(std::get<std::vector<float>>(image.pixels)[at]));
+        rgb[i * 3 + c] =
+            linear ? std::get<std::vector<float>>(image.pixels)[at] : static_cast<float>(srgb_decode(std::get<std::vector<float>>(image.pixels)[at]));
     }
   return {name, image.width, image.height, 3, std::move(rgb)};
 }

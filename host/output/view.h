@@ -10,7 +10,8 @@
 
 namespace sunstone {
 
-// The EV that brings the geometric mean of the positive luminances to 0.18, a middle grey [Reinhard02 eq. 1]; 0 where nothing shines. `rgb` is linear.
+// The EV that brings the geometric mean of the positive luminances to 0.18, a middle grey [Reinhard02 eq. 1]; 0 where nothing shines. `rgb` is
+// linear.
 float automatic_exposure(std::span<const float> rgb);
 
 // A curve that rolls off the highlights: the fit of ACES' reference curve [Narkowicz15]. 0 -> 0, infinity -> 1.

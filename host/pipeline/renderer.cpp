@@ -32,7 +32,7 @@ std::vector<Tile> split(const RenderSettings &s, std::size_t bytes_a_pixel, std:
 }
 
 unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths) {
-  unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : 1u << 16;
+  unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : 1u << 14;  // on CPUs the pool stays in the caches
   if (!tuning.pool && paths < pool) pool = static_cast<unsigned>(std::max<std::uint64_t>(paths, 16));
   return std::max(16u, (pool + 15) / 16 * 16);
 }

@@ -49,8 +49,8 @@ struct Direction {
   double weight;             // of two views that show about the same, the one that people expect
 };
 
-// Three-quarter views all round, thirty degrees off the axes and twenty up; straight on; and from above. Things face +z by custom, and are shown from there or from
-// the right of it where no other side has more to show.
+// Three-quarter views all round, thirty degrees off the axes and twenty up; straight on; and from above. Things face +z by custom, and are shown from
+// there or from the right of it where no other side has more to show.
 std::vector<Direction> directions() {
   std::vector<Direction> list;
   const auto add = [&](float azimuth, float elevation, double weight) {
@@ -120,8 +120,8 @@ Camera look_camera(glm::vec3 from, glm::vec3 at, glm::vec3 up, float yfov) {
   return camera;
 }
 
-// The overcast sky of the CIE [Moon42], L = (1 + 2 sin elevation) / 3 of the zenith's, over a ground of 1/5. A sky that is the same all around would be
-// a white furnace: white objects could not be seen in it.
+// The overcast sky of the CIE [Moon42], L = (1 + 2 sin elevation) / 3 of the zenith's, over a ground of 1/5. A sky that is the same all around would
+// be a white furnace: white objects could not be seen in it.
 static Environment soft_sky() {
   constexpr int width = 4, height = 64;
   std::vector<float> pixels;
@@ -140,8 +140,9 @@ static Environment soft_sky() {
 void add_defaults(Scene &scene, float aspect, const std::string &file, Notices &notices) {
   if (!emits(scene)) {
     scene.environment = soft_sky();
-    notices.note(file, !scene.lights.empty() ? "its lights are all black; lit by a soft sky (CIE overcast, radiance 1 at the zenith)"
-                                                : "has no light, no emissive surface and no environment; lit by a soft sky (CIE overcast, radiance 1 at the zenith)");
+    notices.note(file, !scene.lights.empty()
+                           ? "its lights are all black; lit by a soft sky (CIE overcast, radiance 1 at the zenith)"
+                           : "has no light, no emissive surface and no environment; lit by a soft sky (CIE overcast, radiance 1 at the zenith)");
   }
   if (scene.cameras.empty()) {
     const Camera camera = default_camera(scene, aspect);

@@ -101,16 +101,18 @@ class Validator {
     for (std::size_t i = 0; i < scene_.images.size(); i++) {
       const Image &image = scene_.images[i];
       const std::size_t values = std::visit([](const auto &pixels) { return pixels.size(); }, image.pixels);
-      if (image.width <= 0 || image.height <= 0 || image.channels < 1 || image.channels > 4 || std::int64_t(image.width) > max_image_pixels / image.height ||
-          values != std::size_t(image.width) * image.height * image.channels)
+      if (image.width <= 0 || image.height <= 0 || image.channels < 1 || image.channels > 4 ||
+          std::int64_t(image.width) > max_image_pixels / image.height || values != std::size_t(image.width) * image.height * image.channels)
         fail(item("images", i, image.name), "its size and its pixels do not agree");
     }
-    for (std::size_t i = 0; i < scene_.textures.size(); i++) index(scene_.textures[i].image, scene_.images.size(), true, item("textures", i), "image");
+    for (std::size_t i = 0; i < scene_.textures.size(); i++)
+      index(scene_.textures[i].image, scene_.images.size(), true, item("textures", i), "image");
   }
 
   void texture_use(TextureUse &use, const std::string &where, const char *what) {
     index(use.texture, scene_.textures.size(), true, where, what);
-    if (use.uv_set < 0 || use.uv_set > 1) fail(where, std::string(what) + ": texture coordinate set " + std::to_string(use.uv_set) + "; 0 and 1 are there");
+    if (use.uv_set < 0 || use.uv_set > 1)
+      fail(where, std::string(what) + ": texture coordinate set " + std::to_string(use.uv_set) + "; 0 and 1 are there");
     for (int c = 0; c < 3; c++)
       for (int r = 0; r < 2; r++)
         if (!(std::abs(use.transform[c][r]) <= largest_uv)) {
@@ -236,8 +238,10 @@ class Validator {
     for (std::size_t i = 0; i < p.normals.size(); i++) {
       glm::vec3 &n = p.normals[i];
       const double length = usable(n) ? std::sqrt(double(n.x) * n.x + double(n.y) * n.y + double(n.z) * n.z) : 0;
-      if (!(length > 1e-15)) lost.push_back(i);
-      else if (std::abs(length - 1) > 1e-6) n = glm::vec3(glm::dvec3(n) / length);
+      if (!(length > 1e-15))
+        lost.push_back(i);
+      else if (std::abs(length - 1) > 1e-6)
+        n = glm::vec3(glm::dvec3(n) / length);
     }
     if (lost.empty()) return;
     std::vector<glm::dvec3> sums(p.positions.size(), glm::dvec3(0));
@@ -252,7 +256,8 @@ class Validator {
     }
     std::vector<bool> used(p.positions.size());
     for (const std::uint32_t i : p.indices) used[i] = true;
-    if (std::any_of(lost.begin(), lost.end(), [&](std::size_t i) { return used[i]; })) tally_.add("has normals of no direction: made from the faces", where);
+    if (std::any_of(lost.begin(), lost.end(), [&](std::size_t i) { return used[i]; }))
+      tally_.add("has normals of no direction: made from the faces", where);
   }
 
   void instances() {
@@ -269,8 +274,10 @@ class Validator {
     for (std::size_t i = 0; i < scene_.instances.size(); i++) {
       Instance &instance = scene_.instances[i];
       const bool identity = instance.transform == glm::mat4x3(1);
-      if (identity || !unfit(instance)) kept.push_back(std::move(instance));
-      else if (bad++ == 0) first = item("instances", i, instance.name);
+      if (identity || !unfit(instance))
+        kept.push_back(std::move(instance));
+      else if (bad++ == 0)
+        first = item("instances", i, instance.name);
     }
     scene_.instances = std::move(kept);
     if (bad)
@@ -298,9 +305,11 @@ class Validator {
       Camera &camera = scene_.cameras[i];
       const std::string where = item("cameras", i, camera.name);
       if (!finite(camera.transform) || singular(camera.transform)) fail(where, "its transform is singular or not finite");
-      if (!camera.orthographic && !(camera.yfov > 0 && camera.yfov < 3.1415925f)) fail(where, "a vertical angle of " + number(camera.yfov) + " radians");
+      if (!camera.orthographic && !(camera.yfov > 0 && camera.yfov < 3.1415925f))
+        fail(where, "a vertical angle of " + number(camera.yfov) + " radians");
       if (camera.aspect && !(*camera.aspect > 0 && *camera.aspect < 1e6f)) fail(where, "an aspect ratio of " + number(*camera.aspect));
-      if (camera.orthographic && !(camera.half_width > 0 && camera.half_height > 0 && camera.half_width < largest_coordinate && camera.half_height < largest_coordinate))
+      if (camera.orthographic &&
+          !(camera.half_width > 0 && camera.half_height > 0 && camera.half_width < largest_coordinate && camera.half_height < largest_coordinate))
         fail(where, "a view of " + number(camera.half_width) + " x " + number(camera.half_height));
       clamp(camera.lens_radius, 0, largest_coordinate, 0, "the lens radius", where);
       clamp(camera.focus_distance, 1e-9f, largest_coordinate, 1, "the focus distance", where);
@@ -365,7 +374,8 @@ Bounds scene_bounds(const Scene &scene) {
         for (const std::uint32_t i : p.indices) grow(bounds, instance.transform * glm::vec4(p.positions[i], 1));
     } else {
       for (int k = 0; k < 8; k++)
-        grow(bounds, instance.transform * glm::vec4(k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y, k & 4 ? box.upper.z : box.lower.z, 1));
+        grow(bounds, instance.transform *
+                         glm::vec4(k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y, k & 4 ? box.upper.z : box.lower.z, 1));
     }
   }
   return bounds;

@@ -11,7 +11,8 @@ namespace sunstone {
 namespace {
 
 constexpr std::size_t small_triangles = 6000, large_triangles = 6000;
-constexpr std::size_t most_tests = 300000;  // of pixels against triangles, a view: thousands of triangles that each fill the picture are not all looked at
+constexpr std::size_t most_tests =
+    300000;  // of pixels against triangles, a view: thousands of triangles that each fill the picture are not all looked at
 constexpr float smallest_cosine = 0.1f;  // more slanted surfaces count as this, or one row of pixels would outweigh the picture
 
 bool double_sided(const Scene &scene, const Primitive &primitive) {

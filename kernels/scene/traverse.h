@@ -96,16 +96,16 @@ SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *sea
   PreparedRay world;
   if (scene->instance_count == 0 || !prepare_world_ray(&world, scene, ray)) return 0;
   const int alone = scene->instance_count == 1;
-  InstanceWalk walk;
-  begin_instances(scene, &walk);
-  uint number = alone ? 0 : next_instance(scene, &world, search->passed_t, search->best_t, &walk);
+  ulong stack[SUN_TRACE_STACK];
+  InstanceWalk walk = begin_instances(scene, alone, stack);
+  uint number = alone ? 0 : next_instance(scene, &world, search->passed_t, search->best_t, stack, &walk);
   while (number != SUN_NONE) {
     PreparedRay inside;
     Place place;
     if (enter_instance(scene, number, ray, &world, search, &inside, &place)) {
       if (search_mesh(scene, scene->roots[number], &inside, &place, search, any_one)) return 1;
     }
-    number = alone ? SUN_NONE : next_instance(scene, &world, search->passed_t, search->best_t, &walk);
+    number = alone ? SUN_NONE : next_instance(scene, &world, search->passed_t, search->best_t, stack, &walk);
   }
   return 0;
 }

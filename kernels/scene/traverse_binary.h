@@ -22,29 +22,26 @@ typedef struct TraceScene {
 SUN_INLINE ulong waiting(float t, uint node) { return ((ulong)as_uint(t) << 32) | node; }
 SUN_INLINE float waiting_t(ulong entry) { return as_float((uint)(entry >> 32)); }
 
-typedef struct NodeStack {
-  ulong entry[SUN_BINARY_STACK];
-  int size;
-} NodeStack;
+#define SUN_TRACE_STACK SUN_BINARY_STACK
 
 // Tests the two children of an inner node: the nearer that is hit, or SUN_NONE; the other one, if hit too, waits on the stack.
-SUN_INLINE uint open_node(const TraceScene *scene, uint first, const PreparedRay *ray, float from, float limit, NodeStack *stack) {
+SUN_INLINE uint open_node(const TraceScene *scene, uint first, const PreparedRay *ray, float from, float limit, ulong *stack, int *size) {
   const BinaryNode a = scene->nodes[first], b = scene->nodes[first + 1];
   const Interval ta = box_interval(ray, a.lower[0], a.lower[1], a.lower[2], a.upper[0], a.upper[1], a.upper[2], from);
   const Interval tb = box_interval(ray, b.lower[0], b.lower[1], b.lower[2], b.upper[0], b.upper[1], b.upper[2], from);
   const int hit_a = ta.near <= ta.far && ta.near <= limit, hit_b = tb.near <= tb.far && tb.near <= limit;
   if (hit_a && hit_b) {
     const int swap = tb.near < ta.near;
-    stack->entry[stack->size++] = swap ? waiting(ta.near, first) : waiting(tb.near, first + 1);
+    stack[(*size)++] = swap ? waiting(ta.near, first) : waiting(tb.near, first + 1);
     return swap ? first + 1 : first;
   }
   return hit_a ? first : hit_b ? first + 1 : SUN_NONE;
 }
 
 // The next node that waits and is not beyond `limit`, or SUN_NONE.
-SUN_INLINE uint pop_node(NodeStack *stack, float limit) {
-  while (stack->size > 0) {
-    const ulong entry = stack->entry[--stack->size];
+SUN_INLINE uint pop_node(const ulong *stack, int *size, float limit) {
+  while (*size > 0) {
+    const ulong entry = stack[--*size];
     if (waiting_t(entry) <= limit) return (uint)entry;
   }
   return SUN_NONE;
@@ -52,13 +49,13 @@ SUN_INLINE uint pop_node(NodeStack *stack, float limit) {
 
 // The mesh below `root`: takes the nearest hit that counts. With `any` the first that is found; true if there is one.
 SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay *ray, const Place *place, Search *search, int any) {
-  NodeStack stack;
-  stack.size = 0;
+  ulong stack[SUN_TRACE_STACK];
+  int size = 0;
   uint current = root;
   while (current != SUN_NONE) {
     const uint first = scene->nodes[current].first, count = scene->nodes[current].count;
     if (count == 0) {
-      current = open_node(scene, first, ray, place->from, box_limit(place, search), &stack);
+      current = open_node(scene, first, ray, place->from, box_limit(place, search), stack, &size);
       if (current != SUN_NONE) continue;
     }
     for (uint i = first; i < first + count; i++) {
@@ -70,29 +67,31 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
       if (any) return 1;
       take_hit(search, place, t, u, v, leaf->id & SUN_ID_PRIMITIVE);
     }
-    current = pop_node(&stack, box_limit(place, search));
+    current = pop_node(stack, &size, box_limit(place, search));
   }
   return 0;
 }
 
-// The walk over the top tree; its leaves hold runs of the instance list.
+// The walk over the top tree; its leaves hold runs of the instance list. Its stack is a parameter of its own.
 typedef struct InstanceWalk {
-  NodeStack stack;
+  int size;
   uint next, end;  // what is left of the current leaf
 } InstanceWalk;
 
-SUN_INLINE void begin_instances(const TraceScene *scene, InstanceWalk *walk) {
-  walk->stack.size = 1;
-  walk->stack.entry[0] = waiting(0.0f, scene->top_root);
-  walk->next = walk->end = 0;
+SUN_INLINE InstanceWalk begin_instances(const TraceScene *scene, int alone, ulong *stack) {
+  InstanceWalk walk;
+  walk.size = alone ? 0 : 1;
+  walk.next = walk.end = 0;
+  if (!alone) stack[0] = waiting(0.0f, scene->top_root);
+  return walk;
 }
 
-SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, float from, float limit, InstanceWalk *walk) {
+SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, float from, float limit, ulong *stack, InstanceWalk *walk) {
   while (walk->next == walk->end) {
-    uint current = pop_node(&walk->stack, limit);
-    while (current != SUN_NONE && scene->nodes[current].count == 0) current = open_node(scene, scene->nodes[current].first, ray, from, limit, &walk->stack);
+    uint current = pop_node(stack, &walk->size, limit);
+    while (current != SUN_NONE && scene->nodes[current].count == 0) current = open_node(scene, scene->nodes[current].first, ray, from, limit, stack, &walk->size);
     if (current == SUN_NONE) {
-      if (walk->stack.size == 0) return SUN_NONE;
+      if (walk->size == 0) return SUN_NONE;
       continue;
     }
     walk->next = scene->nodes[current].first;

@@ -69,11 +69,9 @@ SUN_INLINE uint least_id8(uint8 a) { const uint4 b = min(a.lo, a.hi); const uint
   }
 #define SOME_LANE(set) ((set).low | (set).high)
 
-// A child that waits: its box's near t in the upper half (t >= 0, so integers sort like floats), its reference in the lower one.
-typedef struct ChildStack {
-  ulong entry[SUN_WIDE_STACK];
-  int size;
-} ChildStack;
+// A child that waits is a ulong: its box's near t in the upper half (t >= 0, so integers sort like floats), its reference in the lower one. A stack's size
+// stands apart from its entries, so that it stays in a register.
+#define SUN_TRACE_STACK SUN_WIDE_STACK
 
 // Children whose boxes the ray meets between `from` and `limit`.
 SUN_INLINE LaneSet children_hit(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, node_float *near) {
@@ -94,13 +92,13 @@ SUN_INLINE LaneSet children_hit(const SUN_GLOBAL TraceNode *node, const Prepared
 }
 
 // The nearest child that is hit, or SUN_NONE; the others wait on the stack, the farthest deepest.
-SUN_INLINE uint open_node(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, ChildStack *stack) {
+SUN_INLINE uint open_node(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, ulong *stack, int *size) {
   node_float near;
   LaneSet hit = children_hit(node, ray, from, limit, &near);
   if (!SOME_LANE(hit)) return SUN_NONE;
   float t[SUN_WIDTH];
   NODE_STORE(near, t);
-  const int base = stack->size;
+  const int base = *size;
   int lane;
   TAKE_LANE(hit, lane)
   ulong nearest = ((ulong)as_uint(t[lane]) << 32) | node->child[lane];
@@ -109,18 +107,18 @@ SUN_INLINE uint open_node(const SUN_GLOBAL TraceNode *node, const PreparedRay *r
     const ulong entry = ((ulong)as_uint(t[lane]) << 32) | node->child[lane];
     const ulong farther_one = max(entry, nearest);
     nearest = min(entry, nearest);
-    int at = stack->size++;
-    while (at > base && stack->entry[at - 1] < farther_one) {
-      stack->entry[at] = stack->entry[at - 1];
+    int at = (*size)++;
+    while (at > base && stack[at - 1] < farther_one) {
+      stack[at] = stack[at - 1];
       at--;
     }
-    stack->entry[at] = farther_one;
+    stack[at] = farther_one;
   }
   return (uint)nearest;
 }
 
 // The same where order does not matter.
-SUN_INLINE uint open_node_unsorted(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, ChildStack *stack) {
+SUN_INLINE uint open_node_unsorted(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, ulong *stack, int *size) {
   node_float near;
   LaneSet hit = children_hit(node, ray, from, limit, &near);
   if (!SOME_LANE(hit)) return SUN_NONE;
@@ -129,15 +127,15 @@ SUN_INLINE uint open_node_unsorted(const SUN_GLOBAL TraceNode *node, const Prepa
   const uint first = node->child[lane];
   while (SOME_LANE(hit)) {
     TAKE_LANE(hit, lane)
-    stack->entry[stack->size++] = node->child[lane];
+    stack[(*size)++] = node->child[lane];
   }
   return first;
 }
 
 // The next child that waits and is not beyond `limit`, or SUN_NONE.
-SUN_INLINE uint pop_child(ChildStack *stack, float limit) {
-  while (stack->size > 0) {
-    const ulong entry = stack->entry[--stack->size];
+SUN_INLINE uint pop_child(const ulong *stack, int *size, float limit) {
+  while (*size > 0) {
+    const ulong entry = stack[--*size];
     if (as_float((uint)(entry >> 32)) <= limit) return (uint)entry;
   }
   return SUN_NONE;
@@ -145,14 +143,14 @@ SUN_INLINE uint pop_child(ChildStack *stack, float limit) {
 
 // The mesh below `root`: takes the nearest hit that counts. With `any` the first that is found; true if there is one.
 SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay *ray, const Place *place, Search *search, int any_one) {
-  ChildStack stack;
-  stack.size = 0;
+  ulong stack[SUN_TRACE_STACK];
+  int size = 0;
   uint current = root;
   float limit = box_limit(place, search);
   while (current != SUN_NONE) {
     if (!(current & SUN_WIDE_LEAF)) {
       const SUN_GLOBAL TraceNode *node = &scene->nodes[current];
-      current = any_one ? open_node_unsorted(node, ray, place->from, limit, &stack) : open_node(node, ray, place->from, limit, &stack);
+      current = any_one ? open_node_unsorted(node, ray, place->from, limit, stack, &size) : open_node(node, ray, place->from, limit, stack, &size);
       if (current != SUN_NONE) continue;
     } else {
       const SUN_GLOBAL WidePack *pack = &scene->leaves[current & ~SUN_WIDE_LEAF];
@@ -177,24 +175,26 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
         }
       }
     }
-    current = pop_child(&stack, limit);
+    current = pop_child(stack, &size, limit);
   }
   return 0;
 }
 
-// The walk over the top tree; its leaves name instances.
-typedef struct InstanceWalk { ChildStack stack; } InstanceWalk;
+// The walk over the top tree; its leaves name instances. Its stack is a parameter of its own.
+typedef struct InstanceWalk { int size; } InstanceWalk;
 
-SUN_INLINE void begin_instances(const TraceScene *scene, InstanceWalk *walk) {
-  walk->stack.size = 1;
-  walk->stack.entry[0] = scene->top_root;
+SUN_INLINE InstanceWalk begin_instances(const TraceScene *scene, int alone, ulong *stack) {
+  InstanceWalk walk;
+  walk.size = alone ? 0 : 1;
+  if (!alone) stack[0] = scene->top_root;
+  return walk;
 }
 
-SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, float from, float limit, InstanceWalk *walk) {
-  uint current = pop_child(&walk->stack, limit);
+SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, float from, float limit, ulong *stack, InstanceWalk *walk) {
+  uint current = pop_child(stack, &walk->size, limit);
   while (!(current & SUN_WIDE_LEAF)) {
-    current = open_node(&scene->nodes[current], ray, from, limit, &walk->stack);
-    if (current == SUN_NONE) current = pop_child(&walk->stack, limit);
+    current = open_node(&scene->nodes[current], ray, from, limit, stack, &walk->size);
+    if (current == SUN_NONE) current = pop_child(stack, &walk->size, limit);
   }
   return current == SUN_NONE ? SUN_NONE : current & ~SUN_WIDE_LEAF;
 }

@@ -3,6 +3,8 @@
 // 8x8 blocks and of the whole picture, over independent seeds; all tests of this file together are Holm-corrected to a false alarm in 10^6 runs.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/render.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
@@ -11,7 +13,7 @@ namespace sunstone::test {
 namespace {
 
 constexpr double false_alarms = 1e-6;  // a run of this program
-constexpr int scenes_here = 4;         // each takes its share
+constexpr int tests_here = 5;          // each takes its share
 constexpr std::uint32_t seeds = 16;
 
 struct Work {
@@ -39,7 +41,7 @@ void expect_agreement(const Case &scene, RenderSettings settings, const Work &wo
                        integrators[0] + " " + std::to_string(moments(a).mean) + ", " + integrators[1] + " " + std::to_string(moments(b).mean));
       }
   }
-  const std::vector<std::size_t> rejected = holm_rejected(p, false_alarms / scenes_here);
+  const std::vector<std::size_t> rejected = holm_rejected(p, false_alarms / tests_here);
   std::string what;
   for (std::size_t i = 0; i < rejected.size() && i < 12; i++) what += "\n  " + name[rejected[i]] + ", p = " + std::to_string(p[rejected[i]]);
   EXPECT_TRUE(rejected.empty()) << rejected.size() << " of " << p.size() << " means differ:" << what;
@@ -50,7 +52,7 @@ void expect_agreement(const Case &scene, RenderSettings settings, const Work &wo
       const Moments m = moments(means(films[i], layer, whole(films[0][0]), 1));
       EXPECT_GT(m.mean, 0) << layer;
       if (depth == 1) {
-        EXPECT_LT(std::sqrt(m.variance / seeds), 0.004 * m.mean) << layer << " of " << integrators[i] << " is too noisy";
+        EXPECT_LT(std::sqrt(m.variance / seeds), 0.006 * m.mean) << layer << " of " << integrators[i] << " is too noisy";
       }
     }
   }
@@ -69,7 +71,7 @@ TEST(Agree, CornellBox) {
 TEST(Agree, Everything) {
   Scene scene = everything();
   scene.lights.clear();
-  set_sky(scene, sky_map(16, 8, {4, 3.5f, 3}));
+  set_sky_map(scene, sky_map(16, 8, {4, 3.5f, 3}));
   expect_agreement(Case(std::move(scene)), picture(48, 32, 5), {128, 256}, path_and_pure);
 }
 
@@ -81,7 +83,7 @@ TEST(Agree, SkyOverGlossAndMatt) {
   Material gloss = metal({0.2f, 0.3f, 0.8f}, 0.3f);
   gloss.metallic = 0;
   add(scene, sphere({0.7f, 0.6f, 0}, 0.6f), gloss);
-  set_sky(scene, sky_map(32, 16, {8, 7, 5}));
+  set_sky_map(scene, sky_map(32, 16, {8, 7, 5}));
   scene.environment.rotation = 0.3f;
   add_camera(scene, {0, 1.4f, 4}, {0, 0.5f, 0}, 40);
   expect_agreement(Case(std::move(scene)), picture(48, 32, 4), {128, 256}, path_and_pure);
@@ -111,7 +113,7 @@ TEST(Agree, SobolAndIndependent) {
   }
   for (int channel = 0; channel < 3; channel++) {
     const std::vector<double> a = means(independent, "beauty", whole(sobol[0]), channel), b = means(sobol, "beauty", whole(sobol[0]), channel);
-    EXPECT_GT(welch(a, b), 1e-7) << moments(a).mean << " and " << moments(b).mean;
+    EXPECT_GT(welch(a, b), false_alarms / tests_here / 3) << moments(a).mean << " and " << moments(b).mean;
     EXPECT_LT(moments(b).variance, moments(a).variance) << "Sobol' points ought to be less noisy";
   }
 }

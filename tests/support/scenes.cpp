@@ -153,7 +153,7 @@ void set_sky(Scene &scene, glm::vec3 radiance) {
   scene.environment.constant = radiance;
 }
 
-void set_sky(Scene &scene, Image map) {
+void set_sky_map(Scene &scene, Image map) {
   scene.environment.kind = Environment::Kind::map;
   scene.environment.map = std::make_shared<const Image>(std::move(map));
 }
@@ -283,7 +283,7 @@ Scene everything() {
   sun.direction = glm::normalize(glm::vec3(0.3f, -1, 0.2f));
   sun.intensity = glm::vec3(0.3f);
   scene.lights.push_back(sun);
-  set_sky(scene, sky_map(16, 8, {20, 18, 15}));
+  set_sky_map(scene, sky_map(16, 8, {20, 18, 15}));
   add_camera(scene, {0.3f, 1.3f, 4.6f}, {0, 0.6f, 0}, 38);
   return scene;
 }

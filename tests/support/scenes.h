@@ -29,7 +29,7 @@ void add_camera(Scene &scene, glm::vec3 from, glm::vec3 at, float yfov_degrees);
 // Looks along -z from above a plane: x to the right, y up.
 void add_flat_camera(Scene &scene, glm::vec3 from, float half_height);
 void set_sky(Scene &scene, glm::vec3 radiance);
-void set_sky(Scene &scene, Image map);
+void set_sky_map(Scene &scene, Image map);
 
 glm::mat4x3 scaled(glm::vec3 scale, glm::vec3 offset = {0, 0, 0});
 

@@ -150,16 +150,46 @@ TEST(FilmFile, HeadersThatLie) {
   EXPECT_NE(changed("/version", 2).find("newer version"), std::string::npos);
   EXPECT_NE(changed("/picture", {1000000, 1000000}).find("is cut off"), 0u);
   const json two_to_31 = 2147483648u, huge = 1u << 20;
-  const std::vector<std::pair<const char *, json>> lies = {
-      {"/version", "1"}, {"/version", -1}, {"/version", 1.0}, {"/version", nullptr},
-      {"/picture", {0, 1}}, {"/picture", {1}}, {"/picture", {1, 1, 1}}, {"/picture", {-1, 1}}, {"/picture", {1.5, 1}}, {"/picture", {two_to_31, 1}}, {"/picture", 1},
-      {"/window", {0, 0, 0, 1}}, {"/window", {1, 0, 1, 1}}, {"/window", {0, 0, 2, 1}}, {"/window", {0, 0, 1, 18446744073709551615u}}, {"/window", {0, 0, 1}},
-      {"/samples", {{0, 0}}}, {"/samples", {{4, 0}}}, {"/samples", json::array({{0, 4}, {4, 8}})}, {"/samples", json::array({{0, 4}, {3, 8}})},
-      {"/samples", json::array({{8, 9}, {0, 4}})}, {"/samples", {{0, 18446744073709551615u}}}, {"/samples", {{0, 1, 2}}}, {"/samples", {0, 1}}, {"/samples", "0:4"},
-      {"/layers", {"beauty.even"}}, {"/layers", {"beauty.odd", "beauty.even"}}, {"/layers", {"beauty.even", "beauty.even"}}, {"/layers", {"beauty.even", 1}},
-      {"/layers", {"beauty.even", "beauty.odd", "albedo"}}, {"/layers", json::array()},
-      {"/scene_hash", 1}, {"/settings", json::array()}, {"/settings", {{"seed", 1}}}, {"/information", {{"a", json::array()}}},
-      {"/clamped", -1}, {"/clamped", 1.5}, {"/nan", "0"}, {"/interrupted", 0}, {"/more", 1}};
+  const std::vector<std::pair<const char *, json>> lies = {{"/version", "1"},
+                                                           {"/version", -1},
+                                                           {"/version", 1.0},
+                                                           {"/version", nullptr},
+                                                           {"/picture", {0, 1}},
+                                                           {"/picture", {1}},
+                                                           {"/picture", {1, 1, 1}},
+                                                           {"/picture", {-1, 1}},
+                                                           {"/picture", {1.5, 1}},
+                                                           {"/picture", {two_to_31, 1}},
+                                                           {"/picture", 1},
+                                                           {"/window", {0, 0, 0, 1}},
+                                                           {"/window", {1, 0, 1, 1}},
+                                                           {"/window", {0, 0, 2, 1}},
+                                                           {"/window", {0, 0, 1, 18446744073709551615u}},
+                                                           {"/window", {0, 0, 1}},
+                                                           {"/samples", {{0, 0}}},
+                                                           {"/samples", {{4, 0}}},
+                                                           {"/samples", json::array({{0, 4}, {4, 8}})},
+                                                           {"/samples", json::array({{0, 4}, {3, 8}})},
+                                                           {"/samples", json::array({{8, 9}, {0, 4}})},
+                                                           {"/samples", {{0, 18446744073709551615u}}},
+                                                           {"/samples", {{0, 1, 2}}},
+                                                           {"/samples", {0, 1}},
+                                                           {"/samples", "0:4"},
+                                                           {"/layers", {"beauty.even"}},
+                                                           {"/layers", {"beauty.odd", "beauty.even"}},
+                                                           {"/layers", {"beauty.even", "beauty.even"}},
+                                                           {"/layers", {"beauty.even", 1}},
+                                                           {"/layers", {"beauty.even", "beauty.odd", "albedo"}},
+                                                           {"/layers", json::array()},
+                                                           {"/scene_hash", 1},
+                                                           {"/settings", json::array()},
+                                                           {"/settings", {{"seed", 1}}},
+                                                           {"/information", {{"a", json::array()}}},
+                                                           {"/clamped", -1},
+                                                           {"/clamped", 1.5},
+                                                           {"/nan", "0"},
+                                                           {"/interrupted", 0},
+                                                           {"/more", 1}};
   for (const auto &[pointer, value] : lies) EXPECT_NE(changed(pointer, value), "") << pointer << " " << value;
   const json complete = one_pixel_header();
   for (const auto &[key, value] : complete.items()) {
@@ -182,15 +212,17 @@ TEST(FilmFile, HeadersThatAreNoStrictJson) {
   };
   EXPECT_NE(read("{\"clamped\":0," + good.substr(1)).find("twice"), std::string::npos);
   EXPECT_NE(read(std::string(1 << 20, '[')).find("nested too deeply"), std::string::npos);
-  for (const std::string &header : {std::string(), std::string("[]"), std::string("null"), good + "x", good.substr(0, good.size() - 1), "//\n" + good, good + std::string(1, '\0'),
-                                    std::string("{\"a\":\"\xff\"}"), std::string("{\"a\":NaN}"), std::string("{\"a\":1e999}")})
+  for (const std::string &header :
+       {std::string(), std::string("[]"), std::string("null"), good + "x", good.substr(0, good.size() - 1), "//\n" + good,
+        good + std::string(1, '\0'), std::string("{\"a\":\"\xff\"}"), std::string("{\"a\":NaN}"), std::string("{\"a\":1e999}")})
     EXPECT_NE(read(header), "") << printable(header.substr(0, 40));
 }
 
 TEST(FilmFile, HeaderLengthsThatLie) {
   const TemporaryFolder folder;
   const std::string good = one_pixel_header().dump();
-  for (const std::uint64_t length : {~std::uint64_t(0), std::uint64_t(1) << 63, ~std::uint64_t(0) - 31, std::uint64_t(good.size() + one_pixel_bytes + 1), std::uint64_t(0), std::uint64_t(1)}) {
+  for (const std::uint64_t length : {~std::uint64_t(0), std::uint64_t(1) << 63, ~std::uint64_t(0) - 31,
+                                     std::uint64_t(good.size() + one_pixel_bytes + 1), std::uint64_t(0), std::uint64_t(1)}) {
     put(folder / "h.film", file_of(good, one_pixel_bytes, length));
     EXPECT_NE(message_of([&] { read_film(folder / "h.film"); }), "") << length;
   }

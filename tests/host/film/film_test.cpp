@@ -129,7 +129,8 @@ TEST(Film, WhatDoesNotBelongTogetherIsNamed) {
   EXPECT_EQ(refused([](Film &b) { b.scene_hash = "ff"; }),
             head + "scenes differ: the hash is 0123456789abcdef0123456789abcdef in a.film and ff in b.film");
   EXPECT_EQ(refused([](Film &b) { b.picture_width = 5; }), head + "pictures differ: the size is 4x3 in a.film and 5x3 in b.film");
-  EXPECT_EQ(refused([](Film &b) { b.x0 = 1, b.layers.clear(); }), head + "pictures differ: the crop window is 0,0,4,3 in a.film and 1,0,4,3 in b.film");
+  EXPECT_EQ(refused([](Film &b) { b.x0 = 1, b.layers.clear(); }),
+            head + "pictures differ: the crop window is 0,0,4,3 in a.film and 1,0,4,3 in b.film");
   EXPECT_EQ(refused([](Film &b) { b.layers.pop_back(); }), head + "layers differ: albedo is missing in b.film");
   EXPECT_EQ(refused([](Film &b) { b.layers.push_back(test::empty_layer(b, "normal")); }), head + "layers differ: normal is missing in a.film");
   EXPECT_EQ(refused([](Film &b) { b.samples = {{3, 5}}; }), head + "samples 3:4 are there already");
@@ -183,7 +184,8 @@ TEST(Film, VarianceIsUnbiasedForUnequalHalves) {
   double sum = 0;
   for (int run = 0; run < runs; run++) {
     Film film = black_film(1, 1, {{0, samples}});
-    for (int s = 0; s < samples; s++) add(film, s % 2 ? "beauty.odd" : "beauty.even", 0, 0, std::ldexp(std::floor(std::ldexp(uniform(random), 30)), -30));
+    for (int s = 0; s < samples; s++)
+      add(film, s % 2 ? "beauty.odd" : "beauty.even", 0, 0, std::ldexp(std::floor(std::ldexp(uniform(random), 30)), -30));
     sum += film_variance(film, 0, 0);
   }
   const double expected = 1.0 / 12 / samples;  // of the mean of five uniform numbers

@@ -103,7 +103,9 @@ TEST(ImageDecode, ExrKeepsColourAndAlphaAndNoFurtherLayer) {
   for (int i = 0; i < 16; i++)
     for (int c = 0; c < 4; c++) {
       EXPECT_EQ(values<float>(four)[4 * i + c], pattern[6 * i + c]);
-      if (c < 3) { EXPECT_EQ(values<float>(three)[3 * i + c], pattern[6 * i + c]); }
+      if (c < 3) {
+        EXPECT_EQ(values<float>(three)[3 * i + c], pattern[6 * i + c]);
+      }
     }
 }
 

@@ -34,11 +34,21 @@ TEST(ImageMutants, DecodeOrAreRefused) {
       // Half of the changes hit the header, where they matter most.
       const std::size_t at = random() % (random() % 2 ? data.size() : std::min<std::size_t>(data.size(), 128));
       switch (random() % 5) {
-        case 0: data[at] = std::byte(random() % 256); break;
-        case 1: data[at] ^= std::byte(1u << random() % 8); break;
-        case 2: data[at] = std::byte(random() % 2 ? 0xff : 0); break;
-        case 3: data.erase(data.begin() + static_cast<std::ptrdiff_t>(at)); break;
-        case 4: data.insert(data.begin() + static_cast<std::ptrdiff_t>(at), std::byte(random() % 256)); break;
+        case 0:
+          data[at] = std::byte(random() % 256);
+          break;
+        case 1:
+          data[at] ^= std::byte(1u << random() % 8);
+          break;
+        case 2:
+          data[at] = std::byte(random() % 2 ? 0xff : 0);
+          break;
+        case 3:
+          data.erase(data.begin() + static_cast<std::ptrdiff_t>(at));
+          break;
+        case 4:
+          data.insert(data.begin() + static_cast<std::ptrdiff_t>(at), std::byte(random() % 256));
+          break;
       }
     }
     try {

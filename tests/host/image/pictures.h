@@ -56,7 +56,8 @@ inline std::vector<float> float_pattern(int width, int height, int channels) {
 
 // Radiance with flat pixels; `size` stands in for the line "-Y h +X w".
 inline std::string radiance(int width, int height, const std::string &size = {}) {
-  std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + (size.empty() ? "-Y " + std::to_string(height) + " +X " + std::to_string(width) : size) + "\n";
+  std::string text =
+      "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + (size.empty() ? "-Y " + std::to_string(height) + " +X " + std::to_string(width) : size) + "\n";
   for (int i = 0; i < width * height; i++) text += {char(60 + i % 60), char(90), char(120), char(129)};
   return text;
 }

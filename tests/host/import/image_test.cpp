@@ -35,7 +35,8 @@ TEST(Environment, ThreeNumbersAreAConstant) {
   const Environment e = import_environment("1, 2.5,0", notices);
   EXPECT_EQ(e.kind, Environment::Kind::constant);
   EXPECT_EQ(e.constant, glm::vec3(1, 2.5f, 0));
-  for (const char *bad : {"1,2", "1,2,3,4", "1,2,-3", "1,2,nan", "1,2,inf", "1,2,1e99", "a,b,c"}) EXPECT_THROW(import_environment(bad, notices), UsageError) << bad;
+  for (const char *bad : {"1,2", "1,2,3,4", "1,2,-3", "1,2,nan", "1,2,inf", "1,2,1e99", "a,b,c"})
+    EXPECT_THROW(import_environment(bad, notices), UsageError) << bad;
   for (const char *missing : {"", "no-such-picture.hdr"}) EXPECT_THROW(import_environment(missing, notices), Error) << missing;
 }
 
@@ -51,8 +52,8 @@ TEST(Environment, MapsOfTheSharedScenesEndAsTheirTableSays) {
     EXPECT_EQ(r.environment.map->channels, 3);
   }
   const std::pair<const char *, const char *> refused[] = {
-      {"env-truncated.hdr", "cut off"},   {"env-zero-by-zero.hdr", "0 x 0"},      {"env-huge-size.hdr", "2000000 x 1000000"},
-      {"env-rle-overrun.hdr", "broken"},  {"env-truncated.exr", "cut off"},       {"env-huge-window.exr", "2147483647 x 2147483647"},
+      {"env-truncated.hdr", "cut off"},  {"env-zero-by-zero.hdr", "0 x 0"}, {"env-huge-size.hdr", "2000000 x 1000000"},
+      {"env-rle-overrun.hdr", "broken"}, {"env-truncated.exr", "cut off"},  {"env-huge-window.exr", "2147483647 x 2147483647"},
   };
   for (const auto &[name, text] : refused) {
     const Read r = read((folder / name).string());
@@ -74,7 +75,8 @@ TEST(Environment, GoodMapsAreRead) {
     const char *name;
     int width;
     float largest;  // as the folder's README has it
-  } maps[] = {{"venice_sunset_1k.hdr", 1024, 6496}, {"studio_small_03_1k.hdr", 1024, 3568}, {"forest.exr", 1024, 1010}, {"courtyard_512.exr", 512, 0}};
+  } maps[] = {
+      {"venice_sunset_1k.hdr", 1024, 6496}, {"studio_small_03_1k.hdr", 1024, 3568}, {"forest.exr", 1024, 1010}, {"courtyard_512.exr", 512, 0}};
   for (const auto &m : maps) {
     const Read r = read((folder / m.name).string());
     ASSERT_EQ(r.error, "") << m.name;
@@ -82,6 +84,8 @@ TEST(Environment, GoodMapsAreRead) {
     EXPECT_EQ(r.environment.map->height, m.width / 2);
     float largest = 0;
     for (const float v : std::get<std::vector<float>>(r.environment.map->pixels)) largest = std::max(largest, v);
-    if (m.largest > 0) { EXPECT_NEAR(largest, m.largest, 1 + m.largest * 0.01f) << m.name; }
+    if (m.largest > 0) {
+      EXPECT_NEAR(largest, m.largest, 1 + m.largest * 0.01f) << m.name;
+    }
   }
 }

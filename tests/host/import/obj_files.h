@@ -27,6 +27,7 @@ class Folder {
   Folder(const Folder &) = delete;
   Folder &operator=(const Folder &) = delete;
   std::filesystem::path write(const std::string &name, std::string_view text) const {
+    std::filesystem::remove(path_ / name);  // (ext4 waits for the disk where a file is written anew in place)
     std::ofstream(path_ / name, std::ios::binary) << text;
     return path_ / name;
   }

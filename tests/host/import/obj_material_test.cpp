@@ -95,7 +95,8 @@ TEST(ObjMaterial, PbrExtensionIsUsed) {
 }
 
 TEST(ObjMaterial, NamesMayHoldBlanksAndTheFirstOfTwoWins) {
-  const Imported in = import_text("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl my red one\nf 1 2 3\n", "newmtl my red one\nKd 1 0 0\nnewmtl my red one\nKd 0 1 0\n");
+  const Imported in = import_text("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl my red one\nf 1 2 3\n",
+                                  "newmtl my red one\nKd 1 0 0\nnewmtl my red one\nKd 0 1 0\n");
   EXPECT_EQ(in.scene.materials.at(in.only().material).base_color, glm::vec3(1, 0, 0));
   EXPECT_EQ(in.warnings("name that was there before"), 1);
 }

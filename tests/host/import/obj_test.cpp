@@ -93,8 +93,8 @@ TEST(Polygon, WhatCrossesItselfStillEnds) {
 }
 
 TEST(Obj, ReadsAllFormsOfFaces) {
-  for (const char *face : {"f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/1 3/1 4/1", "f 1//1 2//1 3//1 4//1", "f 1/1/1 2/1/1 3/1/1 4/1/1", "f 1/ 2/ 3/ 4/", "f 1 2 \\\n 3 4",
-                           "fo 1 2 3 4", "f\t1  2 3 4 # four corners"}) {
+  for (const char *face : {"f 1 2 3 4", "f -4 -3 -2 -1", "f 1/1 2/1 3/1 4/1", "f 1//1 2//1 3//1 4//1", "f 1/1/1 2/1/1 3/1/1 4/1/1", "f 1/ 2/ 3/ 4/",
+                           "f 1 2 \\\n 3 4", "fo 1 2 3 4", "f\t1  2 3 4 # four corners"}) {
     const Imported in = import_text(square + "vt 0.25 0.25\nvn 0 0 1\n" + face + "\n");
     EXPECT_EQ(in.error, "");
     EXPECT_EQ(in.triangles(), 2u) << face;
@@ -186,8 +186,10 @@ TEST(ResolveResource, StaysBelowTheFolder) {
     }
     return false;
   };
-  for (const char *name : {"inside.txt", "deep/../inside.txt", "./inside.txt", "good.txt", "missing.txt", "no/such/folder.txt"}) EXPECT_FALSE(refused(name)) << name;
-  for (const char *name : {"../outside.txt", "/etc/passwd", "link.txt", "up/outside.txt", "deep/../../outside.txt", "no/../../outside.txt", "", ".", "..", "../in2/x"})
+  for (const char *name : {"inside.txt", "deep/../inside.txt", "./inside.txt", "good.txt", "missing.txt", "no/such/folder.txt"})
+    EXPECT_FALSE(refused(name)) << name;
+  for (const char *name :
+       {"../outside.txt", "/etc/passwd", "link.txt", "up/outside.txt", "deep/../../outside.txt", "no/../../outside.txt", "", ".", "..", "../in2/x"})
     EXPECT_TRUE(refused(name)) << name;
   EXPECT_TRUE(refused(std::string("a\0b", 3)));
   EXPECT_EQ(resolve_resource(folder.path() / "in", "../outside.txt", {.allow_outside = true}, "place"), folder.path() / "in/../outside.txt");
@@ -201,14 +203,14 @@ TEST(ObjQuirks, EachFileGivesWhatItShould) {
     std::size_t triangles, materials;
     int warnings;
   } cases[] = {
-      {"box_longline", 944, 1, 2},                       // no material of that name; the long face crosses itself
-      {"catmark_torus_creases0", 64, 1, 1},              // normals that are not there
+      {"box_longline", 944, 1, 2},           // no material of that name; the long face crosses itself
+      {"catmark_torus_creases0", 64, 1, 1},  // normals that are not there
       {"concave_polygon", 64, 1, 0},
       {"cornell_box_multimaterial", 36, 5, 0},
       {"cube-vertex-w-component", 12, 5, 0},
       {"cube_with_vertexcolors", 12, 1, 0},
       {"issue-246-usemtl-whitespace", 1, 1, 0},
-      {"issue-248-texres-texopt", 12, 5, 1},             // input.jpg
+      {"issue-248-texres-texopt", 12, 5, 1},  // input.jpg
       {"issue-295-trianguation-failure", 28, 1, 0},
       {"issue-319-002", 14, 1, 0},
       {"line-prim", 0, 0, 2},
@@ -247,8 +249,9 @@ TEST(ObjQuirks, MalformedFilesEndAsTheirTableSays) {
     EXPECT_EQ(in.warnings(), 0) << valid;
   }
   EXPECT_EQ(import_file(folder / "valid-polygon-1000.obj").triangles(), 998u);
-  for (const char *warned : {"obj-face-index-zero", "obj-face-index-out-of-range", "obj-face-negative-beyond-start", "obj-face-too-few-vertices", "obj-face-garbage",
-                             "obj-vertex-nan", "obj-mtllib-missing", "obj-mtllib-self-and-outside", "obj-csh-and-call", "mtl-odd"}) {
+  for (const char *warned :
+       {"obj-face-index-zero", "obj-face-index-out-of-range", "obj-face-negative-beyond-start", "obj-face-too-few-vertices", "obj-face-garbage",
+        "obj-vertex-nan", "obj-mtllib-missing", "obj-mtllib-self-and-outside", "obj-csh-and-call", "mtl-odd"}) {
     const Imported in = import_file(folder / (std::string(warned) + ".obj"));
     EXPECT_EQ(in.error, "") << warned;
     EXPECT_EQ(in.triangles(), 1u) << warned;

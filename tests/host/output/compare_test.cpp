@@ -46,7 +46,8 @@ TEST(Compare, EqualPictures) {
 }
 
 TEST(Compare, WhatIsNotFiniteIsCountedAndLeftOut) {
-  const Image reference = picture(4, 1, {0, 0, 0, nan, 0, 0, 0, 0, 0, 0.5f, 0, 0}), image = picture(4, 1, {0, -infinity, 0, 0, 0, 0, infinity, nan, 0, 0.75f, 0, 0});
+  const Image reference = picture(4, 1, {0, 0, 0, nan, 0, 0, 0, 0, 0, 0.5f, 0, 0}),
+              image = picture(4, 1, {0, -infinity, 0, 0, 0, 0, infinity, nan, 0, 0.75f, 0, 0});
   const Comparison result = compare_images(image, reference);
   EXPECT_EQ(result.bad_pixels, 3u);
   EXPECT_DOUBLE_EQ(result.rmse, std::sqrt(0.0625 / 3));
@@ -122,7 +123,9 @@ TEST(Flip, AgreesWithItsAuthors) {
   };
   const Bytes smooth = gradient(0), noisy = noisy_gradient(), grey = solid(128, 128, 128);
   Bytes dot = grey, line = grey;
-  const auto paint = [](Bytes &bytes, int x, int y, std::array<int, 3> rgb) { std::copy(rgb.begin(), rgb.end(), bytes.begin() + (y * width + x) * 3); };
+  const auto paint = [](Bytes &bytes, int x, int y, std::array<int, 3> rgb) {
+    std::copy(rgb.begin(), rgb.end(), bytes.begin() + (y * width + x) * 3);
+  };
   paint(dot, 32, 24, {255, 255, 255});
   for (int y = 0; y < height; y++) paint(line, 32, y, {200, 40, 90});
   const std::vector<Case> cases = {{"black and white", solid(0, 0, 0), solid(255, 255, 255), 67, 0.9673653, 0.9673918},
@@ -143,8 +146,8 @@ TEST(Flip, AgreesWithItsAuthors) {
 }
 
 TEST(Flip, HighlightsAreShownAtExposureZero) {
-  const Image bright = picture(4, 4, std::vector<float>(48, 5.0f)), white = picture(4, 4, std::vector<float>(48, 1.0f)), dark = picture(4, 4, std::vector<float>(48, -1.0f)),
-              black = picture(4, 4, std::vector<float>(48, 0.0f));
+  const Image bright = picture(4, 4, std::vector<float>(48, 5.0f)), white = picture(4, 4, std::vector<float>(48, 1.0f)),
+              dark = picture(4, 4, std::vector<float>(48, -1.0f)), black = picture(4, 4, std::vector<float>(48, 0.0f));
   EXPECT_EQ(compare_images(bright, white).flip, 0) << "both are white on a screen";
   EXPECT_EQ(compare_images(dark, black).flip, 0);
   EXPECT_GT(compare_images(bright, white).rmse, 3.9);

@@ -171,13 +171,15 @@ TEST(Layers, ManyRowsComeBackAsTheyWere) {
   const TemporaryFolder folder;
   Film film = black_film(37, 201, {{0, 1}});  // more than three blocks of rows
   std::mt19937 random(5);
-  for (std::size_t pixel = 0; pixel < film.pixels(); pixel++) add(film, "beauty.even", pixel, static_cast<int>(pixel % 3), std::ldexp(static_cast<double>(random() % 10000), -10));
+  for (std::size_t pixel = 0; pixel < film.pixels(); pixel++)
+    add(film, "beauty.even", pixel, static_cast<int>(pixel % 3), std::ldexp(static_cast<double>(random() % 10000), -10));
   write_picture(folder / "a.exr", film, {});
   const Layers layers = read_layers(folder / "a.exr");
   const std::vector<float> beauty = film_beauty(film);
   for (int y = 0; y < film.height(); y++)
     for (int x = 0; x < film.width(); x++)
-      for (int c = 0; c < 3; c++) ASSERT_EQ(layers.at(std::string(1, "RGB"[c]), x, y), beauty[static_cast<std::size_t>((y * film.width() + x) * 3 + c)]);
+      for (int c = 0; c < 3; c++)
+        ASSERT_EQ(layers.at(std::string(1, "RGB"[c]), x, y), beauty[static_cast<std::size_t>((y * film.width() + x) * 3 + c)]);
   EXPECT_EQ(std::get<std::vector<float>>(read_picture(folder / "a.exr").pixels), beauty) << "compare sees the beauty";
 }
 

@@ -61,7 +61,8 @@ Film colorful_film() {
 }  // namespace
 
 TEST(View, SrgbToTheByte) {
-  // Bytes worked out by hand from the standard's two pieces: 0.0031308 * 12.92 * 255 = 10.31; 0.5 -> 0.7353570 -> 187.5160; 0.18 -> 0.4613561 -> 117.6458.
+  // Bytes worked out by hand from the standard's two pieces: 0.0031308 * 12.92 * 255 = 10.31; 0.5 -> 0.7353570 -> 187.5160; 0.18 -> 0.4613561 ->
+  // 117.6458.
   const Film film = grey_film({0, 0.0009765625, 0.0029296875, 0.003173828125, 0.1796875, 0.5, 0.99609375, 1, 2, 100000, -0.5, -3});
   EXPECT_EQ(reds(view_bytes(film, {})), (std::vector<int>{0, 3, 10, 10, 118, 188, 255, 255, 255, 255, 0, 0}));
   for (int byte = 0; byte < 256; byte++) EXPECT_EQ(byte_of(srgb_encode(srgb_decode(byte / 255.0))), byte);
@@ -134,7 +135,8 @@ TEST(View, FilesComeBack) {
   const std::vector<float> beauty = film_beauty(film), hdr = std::get<std::vector<float>>(read_image(folder / "a.hdr").pixels);
   for (std::size_t pixel = 0; pixel < film.pixels(); pixel++) {
     const float largest = std::max({beauty[pixel * 3], beauty[pixel * 3 + 1], beauty[pixel * 3 + 2]});
-    for (std::size_t c = 0; c < 3; c++) EXPECT_NEAR(hdr[pixel * 3 + c], beauty[pixel * 3 + c], largest / 128 + 1e-30) << "a mantissa of 8 bits, shared";
+    for (std::size_t c = 0; c < 3; c++)
+      EXPECT_NEAR(hdr[pixel * 3 + c], beauty[pixel * 3 + c], largest / 128 + 1e-30) << "a mantissa of 8 bits, shared";
   }
 
   write_picture(folder / "a.film", film, {});

@@ -72,8 +72,14 @@ TEST(Validate, WhatPointsNowhereIsRefusedByName) {
       {[](Scene &s) { s.instances[0].mesh = -1; }, "mesh: index -1"},
       {[](Scene &s) { s.materials[0].normal_texture.texture = 0; }, "normal_texture: index 0, but there are 0"},
       {[](Scene &s) { s.materials[0].emission_texture.uv_set = 2; }, "texture coordinate set 2"},
-      {[](Scene &s) { s.textures.push_back({5, Wrap::repeat, Wrap::repeat, true}); }, "textures[0]: image: index 5"},
-      {[](Scene &s) { s.images.push_back({"picture", 4, 4, 3, std::vector<float>(7)}); }, "images[0] \"picture\""},
+      {[](Scene &s) {
+         s.textures.push_back({5, Wrap::repeat, Wrap::repeat, true});
+       },
+       "textures[0]: image: index 5"},
+      {[](Scene &s) {
+         s.images.push_back({"picture", 4, 4, 3, std::vector<float>(7)});
+       },
+       "images[0] \"picture\""},
       {[](Scene &s) { s.cameras.emplace_back().yfov = 0; }, "cameras[0]: a vertical angle of 0"},
       {[](Scene &s) { s.cameras.emplace_back().aspect = -1.0f; }, "aspect ratio of -1"},
       {[](Scene &s) { s.cameras.emplace_back().transform[0] = glm::vec3(0); }, "singular"},
@@ -118,8 +124,9 @@ TEST(Validate, MeshesLeftEmptyGoWithTheirInstances) {
 }
 
 TEST(Validate, SingularInstancesAreDropped) {
-  for (const glm::mat4x3 &transform : {glm::mat4x3(0), glm::mat4x3(glm::vec3(1, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 0, 1), glm::vec3(0)),
-                                       glm::mat4x3(NAN), glm::mat4x3(glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1), glm::vec3(INFINITY))}) {
+  for (const glm::mat4x3 &transform :
+       {glm::mat4x3(0), glm::mat4x3(glm::vec3(1, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 0, 1), glm::vec3(0)), glm::mat4x3(NAN),
+        glm::mat4x3(glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1), glm::vec3(INFINITY))}) {
     Scene scene = small_scene();
     scene.instances[0].transform = transform;
     const Result result = run(scene);

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Every kernel under Oclgrind, which interprets it and watches each load and store: no report, and one film with PoCL's.
+# The fourth argument is fill_by_write, built as a library.
+. "$(dirname "$0")/common.sh"
+fill=$4
+command -v oclgrind >/dev/null || skip "oclgrind is not installed"
+flags=("$root/scenes/first-picture/first-picture.glb" --size 8x8 --spp 1 --max-depth 2 --aov all)
+reference "${flags[@]}"
+# Oclgrind 21.10 lacks two things that clang makes of our code: llvm.bitreverse when it optimises, and what marks an inlined struct result.
+# shellcheck disable=SC2016
+oclgrind --build-options "-O0 -Dalways_inline=unused" --data-races --uninitialized --check-api --log "$work/oclgrind.txt" \
+  sh -c 'LD_PRELOAD=$0:$LD_PRELOAD exec "$@"' "$fill" \
+  "$sunstone" render "${flags[@]}" -q --device Oclgrind --lanes 1 --layout binary -o oclgrind.film --stats oclgrind.json || { cat oclgrind.txt; fail "the render"; }
+if [ -s oclgrind.txt ]; then
+  head -100 oclgrind.txt
+  fail "Oclgrind has something to report"
+fi
+same_film Oclgrind oclgrind.json
