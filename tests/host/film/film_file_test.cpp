@@ -148,7 +148,7 @@ TEST(FilmFile, HeadersThatLie) {
     return read(header.dump());
   };
   EXPECT_NE(changed("/version", 2).find("newer version"), std::string::npos);
-  EXPECT_NE(changed("/picture", {1000000, 1000000}).find("is cut off"), 0u);
+  EXPECT_EQ(changed("/picture", {1000000, 1000000}), "") << "a small window of a large picture is no lie";
   const json two_to_31 = 2147483648u, huge = 1u << 20;
   const std::vector<std::pair<const char *, json>> lies = {{"/version", "1"},
                                                            {"/version", -1},

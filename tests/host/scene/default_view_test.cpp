@@ -147,18 +147,18 @@ TEST(AddDefaults, GivesASkyOnlyWhereNothingEmits) {
     return std::pair(scene.environment.kind, notices.all().size());
   };
   const Scene dark = scene_of(open_box(2, 1));
-  EXPECT_EQ(notes(dark), std::pair(Environment::Kind::constant, std::size_t(2)));
+  EXPECT_EQ(notes(dark), std::pair(Environment::Kind::map, std::size_t(2)));
   Scene emissive = dark, lamp = dark, black_lamp = dark, sky = dark, camera = dark, unused = dark;
   emissive.materials[0].emission = {0, 1, 0};
   EXPECT_EQ(notes(emissive), std::pair(Environment::Kind::none, std::size_t(1)));
   lamp.lights.emplace_back();
   EXPECT_EQ(notes(lamp), std::pair(Environment::Kind::none, std::size_t(1)));
   black_lamp.lights.emplace_back().intensity = glm::vec3(0);
-  EXPECT_EQ(notes(black_lamp), std::pair(Environment::Kind::constant, std::size_t(2)));
+  EXPECT_EQ(notes(black_lamp), std::pair(Environment::Kind::map, std::size_t(2)));
   sky.environment.kind = Environment::Kind::constant;
   EXPECT_EQ(notes(sky), std::pair(Environment::Kind::constant, std::size_t(1)));
   camera.cameras.emplace_back();
-  EXPECT_EQ(notes(camera), std::pair(Environment::Kind::constant, std::size_t(1)));
+  EXPECT_EQ(notes(camera), std::pair(Environment::Kind::map, std::size_t(1)));
   unused.materials.emplace_back().emission = glm::vec3(1);
-  EXPECT_EQ(notes(unused), std::pair(Environment::Kind::constant, std::size_t(2)));
+  EXPECT_EQ(notes(unused), std::pair(Environment::Kind::map, std::size_t(2)));
 }
