@@ -27,7 +27,7 @@ render:
 	cmake --preset release
 	cmake --build --preset release --target sunstone sunstone_content
 	mkdir -p out
-	$(SUNSTONE) render scenes/first-picture/first-picture.glb --size 960x540 --spp 32 --aperture 0.006 --focus 0.63 --tone filmic -o out/first-picture.png
+	$(SUNSTONE) render scenes/first-picture/first-picture.glb --size 800x450 --spp 48 --aperture 0.006 --focus 0.63 --tone filmic -o out/first-picture.png
 	@echo "The picture is $(CURDIR)/out/first-picture.png"
 
 test:
@@ -44,7 +44,7 @@ asan:
 	scripts/setup.sh test
 	cmake --preset asan
 	cmake --build --preset asan
-	ctest --preset asan -j2 -L 'unit|import'
+	ctest --preset asan --no-tests=error -j2 -L 'unit|import'
 
 install:
 	scripts/setup.sh build

@@ -4,8 +4,8 @@
 
 namespace sunstone {
 
-// A room of 20 x 8 x 20 metres, about a million triangles of very uneven density: bumpy floor, displaced spheres, clusters of small balls, grass, long
-// thin rods. One mesh, one instance of identity, no tree yet.
+// A room of 20 x 8 x 20 metres, about a million triangles of very uneven density: bumpy floor, displaced spheres, clusters of small balls, grass,
+// long thin rods. One mesh, one instance of identity, no tree yet.
 FlatScene make_big_scene();
 
 }  // namespace sunstone

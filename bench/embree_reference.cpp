@@ -21,7 +21,7 @@ struct EmbreeReference::State {
   std::vector<RTCScene> meshes;
   std::vector<uint> first_triangle;  // by mesh
   std::vector<uint> instance_mesh;
-  bool flat = false;                 // one instance of identity: no instancing in Embree either
+  bool flat = false;  // one instance of identity: no instancing in Embree either
   unsigned threads = 1;
   ~State() {
     for (RTCScene mesh : meshes)
@@ -50,7 +50,8 @@ struct EmbreeReference::State {
 namespace {
 
 // Calls trace(begin, end) over chunks of rays in `threads` threads; returns seconds.
-template <class Trace> double in_chunks(std::size_t count, unsigned threads, Trace &&trace) {
+template <class Trace>
+double in_chunks(std::size_t count, unsigned threads, Trace &&trace) {
   constexpr std::size_t chunk = 1024;
   std::atomic<std::size_t> next{0};
   const auto start = std::chrono::steady_clock::now();
@@ -86,7 +87,8 @@ RTCRay embree_ray(const TraceRay &ray) {
 void add_triangles(RTCDevice device, RTCScene scene, const FlatScene &from, const MeshRange &mesh, RTCBuildQuality quality) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto *positions = static_cast<float *>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, from.vertices.size()));
-  auto *indices = static_cast<uint *>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, std::max(mesh.triangle_count, 1u)));
+  auto *indices =
+      static_cast<uint *>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, std::max(mesh.triangle_count, 1u)));
   if (!positions || !indices) throw Error{"Embree", "no memory for the reference's geometry"};
   for (const kernel::Vertex &vertex : from.vertices) positions = std::copy_n(vertex.position, 3, positions);
   std::fill_n(indices, 3, 0u);
@@ -127,7 +129,8 @@ EmbreeReference::EmbreeReference(const FlatScene &scene, const EmbreeOptions &op
     }
   }
   rtcCommitScene(s.scene);
-  if (const RTCError error = rtcGetDeviceError(s.device); error != RTC_ERROR_NONE) throw Error{"Embree", "the reference does not build: error " + std::to_string(int(error))};
+  if (const RTCError error = rtcGetDeviceError(s.device); error != RTC_ERROR_NONE)
+    throw Error{"Embree", "the reference does not build: error " + std::to_string(int(error))};
 }
 
 EmbreeReference::~EmbreeReference() = default;
@@ -172,7 +175,8 @@ double EmbreeReference::closest16(std::span<const TraceRay> rays, std::span<kern
       }
       rtcIntersect16(valid, state_->scene, &context, &query);
       for (std::size_t k = 0; k < 16 && first + k < end; k++)
-        state_->fill(hits[first + k], query.ray.tfar[k], query.hit.u[k], query.hit.v[k], query.hit.geomID[k], query.hit.primID[k], query.hit.instID[0][k]);
+        state_->fill(hits[first + k], query.ray.tfar[k], query.hit.u[k], query.hit.v[k], query.hit.geomID[k], query.hit.primID[k],
+                     query.hit.instID[0][k]);
     }
   });
 }

@@ -10,9 +10,9 @@
 namespace sunstone {
 
 struct EmbreeOptions {
-  bool robust = false;     // RTC_SCENE_FLAG_ROBUST: watertight
-  bool high = true;        // build quality high (spatial splits, where not robust), else medium
-  unsigned threads = 0;    // that trace; 0: all
+  bool robust = false;   // RTC_SCENE_FLAG_ROBUST: watertight
+  bool high = true;      // build quality high (spatial splits, where not robust), else medium
+  unsigned threads = 0;  // that trace; 0: all
 };
 
 class EmbreeReference {

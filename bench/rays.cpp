@@ -21,7 +21,9 @@ float unit(std::uint32_t seed, std::size_t i, std::uint32_t dimension) {
 }
 
 // Where a ray hit, a little in front of the surface, and the normal there.
-struct Surface { vec3 point, normal; };
+struct Surface {
+  vec3 point, normal;
+};
 
 vec3 to_world(const kernel::Instance &instance, vec3 p) {
   const float *m = instance.to_world;
@@ -37,8 +39,9 @@ Surface surface_of(const FlatScene &scene, const TraceRay &ray, const kernel::Hi
   const vec3 direction = vector_of(ray.direction);
   if (kernel::dot3(normal, direction) > 0) normal = kernel::negate3(normal);
   const vec3 point = kernel::add3(vector_of(ray.origin), kernel::scale3(direction, hit.t));
-  const float offset = 1e-5f * kernel::max_of3(kernel::make_vec3(scene.bounds.upper.x - scene.bounds.lower.x, scene.bounds.upper.y - scene.bounds.lower.y,
-                                                                 scene.bounds.upper.z - scene.bounds.lower.z));
+  const float offset =
+      1e-5f * kernel::max_of3(kernel::make_vec3(scene.bounds.upper.x - scene.bounds.lower.x, scene.bounds.upper.y - scene.bounds.lower.y,
+                                                scene.bounds.upper.z - scene.bounds.lower.z));
   return {kernel::add3(point, kernel::scale3(normal, offset)), normal};
 }
 

@@ -41,8 +41,10 @@ class Tracer {
   double trace(const Buffer<TraceRay> &rays, const Buffer<Passed> &passed, bool any, const Buffer<kernel::Hit> &hits, const Buffer<uint> &blocked) {
     const uint count = uint(rays.size()), want = 0;
     const auto start = std::chrono::steady_clock::now();
-    if (any) any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, instances_, top_root_, instance_count_);
-    else closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, instances_, top_root_, instance_count_);
+    if (any)
+      any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, instances_, top_root_, instance_count_);
+    else
+      closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, instances_, top_root_, instance_count_);
     device_.finish();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
@@ -75,15 +77,18 @@ struct RaySet {
 void compare(TraversalResult &row, std::span<const kernel::Hit> ours, std::span<const kernel::Hit> theirs, bool any) {
   for (std::size_t i = 0; i < ours.size(); i++) {
     const bool a = ours[i].instance != SUN_NONE, b = theirs[i].instance != SUN_NONE;
-    if (a != b) row.hit_mismatches++;
-    else if (a && !any && !(std::fabs(ours[i].t - theirs[i].t) <= 1e-4f * std::fabs(theirs[i].t))) row.t_mismatches++;
+    if (a != b)
+      row.hit_mismatches++;
+    else if (a && !any && !(std::fabs(ours[i].t - theirs[i].t) <= 1e-4f * std::fabs(theirs[i].t)))
+      row.t_mismatches++;
   }
 }
 
 }  // namespace
 
-std::vector<TraversalResult> run_traversal_bench(const Device &device, const FlatScene &scene, const kernel::Camera &camera, std::span<const Tree> trees,
-                                                 std::span<const TraversalReference> references, const TraversalOptions &options) {
+std::vector<TraversalResult> run_traversal_bench(const Device &device, const FlatScene &scene, const kernel::Camera &camera,
+                                                 std::span<const Tree> trees, std::span<const TraversalReference> references,
+                                                 const TraversalOptions &options) {
   std::vector<Tracer> tracers;
   for (const Tree &tree : trees) tracers.emplace_back(device, scene, tree);
   std::vector<TraversalResult> results;

@@ -14,7 +14,7 @@ cmake --preset asan && cmake --build --preset asan --target "${readers[@]/%//all
 failed=()
 for folder in "${readers[@]}"; do
   echo "== under the address and undefined-behaviour sanitizers: $folder"
-  ctest --test-dir "build/asan/$folder" --output-on-failure -j "$jobs" || failed+=("$folder")
+  ctest --test-dir "build/asan/$folder" --no-tests=error --output-on-failure -j "$jobs" || failed+=("$folder")
 done
 
 echo "== all tests"

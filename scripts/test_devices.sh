@@ -36,4 +36,4 @@ done
 
 # Test programs link Debian's TBB, which must not come into a process before Intel's newer one: its platform would vanish without a word.
 export LD_PRELOAD=$devices/venv/lib/libtbb.so.12
-SUNSTONE_TEST_DEVICE=$intel ctest --test-dir "$build" --output-on-failure -j 2 -L '^(render|kernel)$'
+SUNSTONE_TEST_DEVICE=$intel ctest --test-dir "$build" --no-tests=error --output-on-failure -j 2 -L '^(render|kernel)$'

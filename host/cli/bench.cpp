@@ -41,7 +41,7 @@ void finish(const Options &o, Json result, const DeviceInfo &device) {
 
 // The scene of the flags, or the made room of a million triangles.
 LoadedScene bench_scene(const Options &o, const RenderSettings &settings, const DeviceInfo &device, Notices &notices) {
-  if (!o.render.scene.empty()) return load_scene(o.render, settings, device_layout(device), device.max_allocation, notices);
+  if (!o.render.scene.empty()) return load_scene(o.render, settings, device_layout(device), device, notices);
   LoadedScene loaded;
   loaded.flat = make_big_scene();
   loaded.camera = corner_camera(loaded.flat.bounds);

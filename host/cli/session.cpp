@@ -56,7 +56,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 }  // namespace
 
-LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, Layout layout, std::size_t max_page_bytes, Notices &notices) {
+LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, Layout layout, const DeviceInfo &info, Notices &notices) {
   LoadedScene loaded;
   const Content &content = load_content();
   const double begun = now();
@@ -75,9 +75,15 @@ LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, L
   }
   const Camera camera = choose_camera(content, o, loaded.scene, aspect);
   loaded.import_seconds = now() - begun;
+  const std::size_t estimate = content.estimate_memory(loaded.scene, layout).total();
+  const double mebibytes = static_cast<double>(estimate) / 1048576.0;
+  if (estimate > info.memory)
+    throw Error(o.scene, fmt::format("needs about {:.0f} MiB on the device, which has {:.0f} MiB", mebibytes, static_cast<double>(info.memory) / 1048576.0),
+                "choose another --device, or a smaller scene");
+  if (mebibytes >= 256) notices.note(o.scene, fmt::format("needs about {:.0f} MiB on the device", mebibytes));
   FlattenOptions flatten;
   flatten.layout = layout;
-  flatten.max_page_bytes = max_page_bytes;
+  flatten.max_page_bytes = info.max_allocation;
   loaded.flat = content.flatten(loaded.scene, flatten, notices);
   loaded.camera = content.flatten_camera(camera, settings.width, settings.height);
   loaded.build_seconds = now() - begun - loaded.import_seconds;
@@ -103,7 +109,7 @@ Session open_session(const RenderOptions &o, const RenderSettings &settings, Not
   if (o.lanes) session.variant.lanes = o.lanes;
   if (!o.layout.empty()) session.variant.layout = layout_from_name(o.layout);
   std::future<LoadedScene> loading =
-      std::async(std::launch::async, [&] { return load_scene(o, settings, session.variant.layout, info.max_allocation, notices); });
+      std::async(std::launch::async, [&] { return load_scene(o, settings, session.variant.layout, info, notices); });
   session.device = Device(info, {o.threads, true, o.work_group});
   session.loaded = loading.get();
   session.variant = scene_variant(session.variant, session.loaded.flat);

@@ -18,8 +18,9 @@ struct LoadedScene {
   std::string line;  // what it is, in one line
 };
 
-// Imports and flattens by the flags of `render`: camera, environment, defaults. `textures_at_most`: of one buffer on the device.
-LoadedScene load_scene(const RenderOptions &options, const RenderSettings &settings, Layout layout, std::size_t max_page_bytes, Notices &notices);
+// Imports and flattens by the flags of `render`: camera, environment, defaults. Throws Error where the estimate exceeds the device's memory, before
+// anything is flattened; says the estimate first where it is large.
+LoadedScene load_scene(const RenderOptions &options, const RenderSettings &settings, Layout layout, const DeviceInfo &info, Notices &notices);
 
 // What the programs have to know of a scene.
 Variant scene_variant(Variant variant, const FlatScene &scene);

@@ -15,8 +15,8 @@
 
 #include "base/error.h"
 #include "flatten/layouts.h"
+#include "flatten/reinsertion.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi"  // notes on passing RTCBuildPrimitive, which is aligned to 32 bytes
 
 namespace sunstone {
 namespace {
@@ -35,12 +35,18 @@ using Embree = std::unique_ptr<RTCDeviceTy, Release>;
 
 std::string error_name(RTCError error) {
   switch (error) {
-    case RTC_ERROR_OUT_OF_MEMORY: return "out of memory";
-    case RTC_ERROR_UNSUPPORTED_CPU: return "this CPU is not supported";
-    case RTC_ERROR_INVALID_ARGUMENT: return "invalid argument";
-    case RTC_ERROR_INVALID_OPERATION: return "invalid operation";
-    case RTC_ERROR_CANCELLED: return "cancelled";
-    default: return "error " + std::to_string(int(error));
+    case RTC_ERROR_OUT_OF_MEMORY:
+      return "out of memory";
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      return "this CPU is not supported";
+    case RTC_ERROR_INVALID_ARGUMENT:
+      return "invalid argument";
+    case RTC_ERROR_INVALID_OPERATION:
+      return "invalid operation";
+    case RTC_ERROR_CANCELLED:
+      return "cancelled";
+    default:
+      return "error " + std::to_string(int(error));
   }
 }
 
@@ -88,7 +94,11 @@ BinaryTree read_built(const Built *root, std::size_t count) {
   std::vector<RTCBuildPrimitive> boxes;
   tree.items.reserve(count);
   boxes.reserve(count);
-  struct Open { const Built *built; uint node; std::size_t depth; };
+  struct Open {
+    const Built *built;
+    uint node;
+    std::size_t depth;
+  };
   std::vector<Open> open{{root, 0, 1}};
   tree.nodes.emplace_back();
   while (!open.empty()) {
@@ -121,12 +131,17 @@ BinaryTree read_built(const Built *root, std::size_t count) {
 }
 
 // Halves at the median centre along the longest axis: no SAH, but a depth of log2 for any input at all.
-BinaryTree build_by_halving(std::vector<RTCBuildPrimitive> &boxes, unsigned leaf_items) {
+BinaryTree build_by_halving(std::span<const RTCBuildPrimitive> boxes, unsigned leaf_items) {
   BinaryTree tree;
-  struct Open { uint node, first, count; std::size_t depth; };
+  std::vector<uint> order(boxes.size());
+  std::iota(order.begin(), order.end(), 0u);
+  struct Open {
+    uint node, first, count;
+    std::size_t depth;
+  };
   std::vector<Open> open{{0, 0, uint(boxes.size()), 1}};
   tree.nodes.emplace_back();
-  const auto middle = [](const RTCBuildPrimitive &box, int axis) { return 0.5f * (&box.lower_x)[axis] + 0.5f * (&box.upper_x)[axis]; };
+  const auto middle = [&](uint box, int axis) { return 0.5f * (&boxes[box].lower_x)[axis] + 0.5f * (&boxes[box].upper_x)[axis]; };
   while (!open.empty()) {
     const Open at = open.back();
     open.pop_back();
@@ -135,26 +150,29 @@ BinaryTree build_by_halving(std::vector<RTCBuildPrimitive> &boxes, unsigned leaf
     tree.nodes[at.node].first_item = at.first;
     tree.nodes[at.node].item_count = at.count;
     if (at.count <= leaf_items) continue;
-    const auto begin = boxes.begin() + at.first, end = begin + at.count;
+    const auto begin = order.begin() + at.first, end = begin + at.count;
     int longest = 0;
     float extent = -1.0f;
     for (int axis = 0; axis < 3; axis++) {
-      const auto [low, high] = std::minmax_element(begin, end, [&](const auto &a, const auto &b) { return middle(a, axis) < middle(b, axis); });
+      const auto [low, high] = std::minmax_element(begin, end, [&](uint a, uint b) { return middle(a, axis) < middle(b, axis); });
       if (middle(*high, axis) - middle(*low, axis) > extent) {
         extent = middle(*high, axis) - middle(*low, axis);
         longest = axis;
       }
     }
     const uint half = at.count / 2;
-    std::nth_element(begin, begin + half, end, [&](const auto &a, const auto &b) { return middle(a, longest) < middle(b, longest); });
+    std::nth_element(begin, begin + half, end, [&](uint a, uint b) { return middle(a, longest) < middle(b, longest); });
     const uint first = uint(tree.nodes.size());
     tree.nodes[at.node].first_child = first;
     tree.nodes.resize(first + 2);
     open.push_back({first + 1, at.first + half, at.count - half, at.depth + 1});
     open.push_back({first, at.first, half, at.depth + 1});
   }
-  for (const auto &box : boxes) tree.items.push_back(box.primID);
-  fit_boxes(tree, boxes);
+  std::vector<RTCBuildPrimitive> ordered;
+  ordered.reserve(order.size());
+  for (const uint i : order) ordered.push_back(boxes[i]);
+  for (const RTCBuildPrimitive &box : ordered) tree.items.push_back(box.primID);
+  fit_boxes(tree, ordered);
   return tree;
 }
 
@@ -181,15 +199,20 @@ BinaryTree build_by_sah(RTCDevice embree, std::vector<RTCBuildPrimitive> &boxes,
   if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_CANCELLED) throw Error{"tree", "Embree: " + error_name(error)};
   if (!root || error != RTC_ERROR_NONE) return {};
   BinaryTree tree = read_built(static_cast<const Built *>(root), boxes.size());
-  return tree.depth <= max_depth ? std::move(tree) : BinaryTree{};
+  if (tree.depth > max_depth) return {};
+  optimize_by_reinsertion(tree, 1);  // a second pass gains a quarter of the first
+  if (tree.depth > max_depth) tree = read_built(static_cast<const Built *>(root), boxes.size());
+  return tree;
 }
 
 // Boxes beyond this overflow areas: they are not worth a SAH.
 constexpr float sah_limit = 1e18f;
 
-template <class LayOut> TreePart build_part(RTCDevice embree, std::vector<RTCBuildPrimitive> &boxes, unsigned leaf_items, Layout layout, LayOut &&lay_out) {
+template <class LayOut>
+TreePart build_part(RTCDevice embree, std::vector<RTCBuildPrimitive> &boxes, unsigned leaf_items, Layout layout, LayOut &&lay_out) {
   const bool moderate = std::all_of(boxes.begin(), boxes.end(), [](const auto &box) {
-    return std::max({std::fabs(box.lower_x), std::fabs(box.lower_y), std::fabs(box.lower_z), std::fabs(box.upper_x), std::fabs(box.upper_y), std::fabs(box.upper_z)}) < sah_limit;
+    return std::max({std::fabs(box.lower_x), std::fabs(box.lower_y), std::fabs(box.lower_z), std::fabs(box.upper_x), std::fabs(box.upper_y),
+                     std::fabs(box.upper_z)}) < sah_limit;
   });
   if (moderate && boxes.size() > leaf_items) {
     const BinaryTree tree = build_by_sah(embree, boxes, leaf_items);
@@ -308,7 +331,8 @@ Tree build_tree(const FlatScene &scene, Layout layout, const std::function<void(
     }
     std::vector<RTCBuildPrimitive> boxes = triangle_boxes(scene, mesh);
     mesh_bounds[i] = bounds_of(boxes);
-    parts[i] = build_part(embree.get(), boxes, leaf_triangles(layout), layout, [&](const BinaryTree &tree) { return lay_out_mesh(tree, layout, scene); });
+    parts[i] =
+        build_part(embree.get(), boxes, leaf_triangles(layout), layout, [&](const BinaryTree &tree) { return lay_out_mesh(tree, layout, scene); });
     report(mesh.triangle_count);
   });
   check_identity_boxes(scene, mesh_bounds);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The wide layouts collapse the binary tree by dynamic programming [Ylitie17]: of all ways to cut it into nodes of up to W children and packs of up to
-// SUN_PACK triangles, the one of least surface-area cost. Recursion is as deep as the tree, which its builder bounds.
+// The wide layouts collapse the binary tree by dynamic programming [Ylitie17]: of all ways to cut it into nodes of up to W children and packs of up
+// to SUN_PACK triangles, the one of least surface-area cost. Recursion is as deep as the tree, which its builder bounds.
 #include "flatten/layouts.h"
 
 #include <tbb/parallel_invoke.h>
@@ -30,7 +30,8 @@ std::array<float, 9> corners(const FlatScene &scene, uint triangle) {
   return v;
 }
 
-template <class T> std::vector<std::byte> bytes_of(const std::vector<T> &values) {
+template <class T>
+std::vector<std::byte> bytes_of(const std::vector<T> &values) {
   std::vector<std::byte> bytes(values.size() * sizeof(T));
   if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
   return bytes;
@@ -54,13 +55,15 @@ TreePart lay_out_binary(const BinaryTree &tree) {
   return part;
 }
 
-template <class WideNode> class Collapse {
+template <class WideNode>
+class Collapse {
  public:
   static constexpr int width = int(std::size(WideNode{}.child));
   Collapse(const BinaryTree &tree, unsigned leaf_items) : tree_(tree), leaf_items_(leaf_items), plans_(tree.nodes.size()) {}
 
   // `leaf(node)` writes a leaf and returns its number.
-  template <class Leaf> TreePart run(Leaf &&leaf) {
+  template <class Leaf>
+  TreePart run(Leaf &&leaf) {
     solve(0);
     TreePart part;
     if (plans_[0].how[0] == as_leaf) {
@@ -70,7 +73,11 @@ template <class WideNode> class Collapse {
       return part;
     }
     // Depth first, so that a subtree's nodes stand together.
-    struct Open { uint node; uint binary; std::size_t depth, waiting; };
+    struct Open {
+      uint node;
+      uint binary;
+      std::size_t depth, waiting;
+    };
     std::vector<WideNode> nodes(1);
     std::vector<Open> open{{0, 0, 1, 0}};
     std::vector<uint> children;
@@ -187,7 +194,8 @@ template <class WideNode> class Collapse {
   std::vector<Plan> plans_;
 };
 
-template <class WideNode> TreePart lay_out_wide_mesh(const BinaryTree &tree, const FlatScene &scene) {
+template <class WideNode>
+TreePart lay_out_wide_mesh(const BinaryTree &tree, const FlatScene &scene) {
   std::vector<kernel::WidePack> packs;
   TreePart part = Collapse<WideNode>(tree, SUN_PACK).run([&](const Node &node) {
     kernel::WidePack &pack = packs.emplace_back();
@@ -206,7 +214,8 @@ template <class WideNode> TreePart lay_out_wide_mesh(const BinaryTree &tree, con
   return part;
 }
 
-template <class WideNode> void move_children(std::byte *bytes, std::size_t count, uint nodes, uint leaves) {
+template <class WideNode>
+void move_children(std::byte *bytes, std::size_t count, uint nodes, uint leaves) {
   for (std::size_t i = 0; i < count; i++) {
     WideNode node;
     std::memcpy(&node, bytes + i * sizeof node, sizeof node);
@@ -227,9 +236,12 @@ void move_binary(std::byte *bytes, std::size_t count, uint nodes, uint leaves) {
   }
 }
 
-template <class T> void append(std::vector<T> &to, std::vector<T> &&from) {
-  if (to.empty()) to = std::move(from);
-  else to.insert(to.end(), from.begin(), from.end());
+template <class T>
+void append(std::vector<T> &to, std::vector<T> &&from) {
+  if (to.empty())
+    to = std::move(from);
+  else
+    to.insert(to.end(), from.begin(), from.end());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both children of a node stand side by side, a pair. Taking a node out frees its pair: its sibling moves up into their parent's place. Putting it back
-// fills that pair again: with the node and what stood at the new place, whose slot becomes their parent.
+// Both children of a node stand side by side, a pair. Taking a node out frees its pair: its sibling moves up into their parent's place. Putting it
+// back fills that pair again: with the node and what stood at the new place, whose slot becomes their parent.
 #include "flatten/reinsertion.h"
 
 #include <algorithm>
@@ -28,7 +28,8 @@ void include(Box &box, const Node &node) {
     box.upper[axis] = std::max(box.upper[axis], node.upper[axis]);
   }
 }
-template <class B> float area(const B &box) {
+template <class B>
+float area(const B &box) {
   const float x = box.upper[0] - box.lower[0], y = box.upper[1] - box.lower[1], z = box.upper[2] - box.lower[2];
   return x * y + y * z + z * x;
 }
@@ -70,8 +71,8 @@ class Reinsertion {
     }
   }
 
-  // Where the sum of areas falls most when the subtree `node` stands beside what is there; 0 where it is best left alone. Branch and bound: up the ancestors, and
-  // at each down into the other half.
+  // Where the sum of areas falls most when the subtree `node` stands beside what is there; 0 where it is best left alone. Branch and bound: up the
+  // ancestors, and at each down into the other half.
   uint best_place(uint node) {
     const Node &moved = nodes_[node];
     const float own = area(moved);
@@ -132,7 +133,10 @@ class Reinsertion {
     if (old_parent != 0) refit(parent_[old_parent]);
   }
 
-  struct Open { float gain; uint node; };
+  struct Open {
+    float gain;
+    uint node;
+  };
   std::vector<Node> &nodes_;
   std::vector<uint> parent_;
   std::vector<Open> open_;
@@ -143,7 +147,10 @@ BinaryTree in_order(const BinaryTree &from) {
   BinaryTree tree;
   tree.nodes.reserve(from.nodes.size());
   tree.items.reserve(from.items.size());
-  struct Open { uint from, to; std::size_t depth; };
+  struct Open {
+    uint from, to;
+    std::size_t depth;
+  };
   std::vector<Open> open{{0, 0, 1}};
   tree.nodes.emplace_back();
   while (!open.empty()) {
@@ -176,7 +183,9 @@ BinaryTree in_order(const BinaryTree &from) {
 void optimize_by_reinsertion(BinaryTree &tree, int passes) {
   if (tree.nodes.size() < 7) return;
   Reinsertion reinsertion(tree);
-  for (int i = 0; i < passes; i++) reinsertion.pass(tree.nodes.size() / 4);
+  // Large nodes are met by most rays; beyond so many the time would grow with nothing to show for it.
+  const std::size_t count = std::min(tree.nodes.size() / 4, std::size_t(200000));
+  for (int i = 0; i < passes; i++) reinsertion.pass(count);
   tree = in_order(tree);
 }
 

@@ -50,8 +50,10 @@ Scene import_obj(const std::filesystem::path &path, const ImportOptions &options
   }
   ObjMesh built = build_obj_mesh(obj.faces);
   if (built.crossing)
-    notices.warning(file, std::to_string(built.crossing) + (built.crossing == 1 ? " polygon crosses itself" : " polygons cross themselves") +
-                              ": what is rendered of it may overlap");
+    notices.warning(file,
+                    std::to_string(built.crossing) +
+                        (built.crossing == 1 ? " polygon crosses itself or is too intricate" : " polygons cross themselves or are too intricate") +
+                        ": what is rendered of it may overlap");
   built.mesh.name = scene.name;
   scene.meshes.push_back(std::move(built.mesh));
   scene.instances.push_back({scene.name, 0, glm::mat4x3(1)});

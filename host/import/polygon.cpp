@@ -9,9 +9,9 @@ namespace sunstone {
 
 namespace {
 
-// Tests of a point against an ear, for one polygon: beyond them the rest is cut without looking. A polygon of 10,000 corners, half of them reflex,
-// stays below.
-constexpr std::size_t most_tests = std::size_t(1) << 28;
+// Tests of points against ears and of corners for being one, for each corner of a polygon and for a polygon: beyond them the rest is cut without
+// looking, so that no outline takes long. A circle of 10,000 corners that were rounded, half of them inwards, stays below.
+constexpr std::size_t tests_a_corner = std::size_t(1) << 15, tests_a_polygon = std::size_t(1) << 28;
 
 double cross(const glm::dvec2 &a, const glm::dvec2 &b, const glm::dvec2 &c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
@@ -19,6 +19,7 @@ class EarClipper {
  public:
   EarClipper(std::vector<glm::dvec2> points, std::vector<std::uint32_t> &triangles) : points_(std::move(points)), triangles_(triangles) {
     const std::uint32_t n = static_cast<std::uint32_t>(points_.size());
+    most_tests_ = std::min(tests_a_corner * n, tests_a_polygon);
     next_.resize(n);
     previous_.resize(n);
     blocking_.resize(n);
@@ -43,7 +44,7 @@ class EarClipper {
     for (std::size_t left = points_.size(); left > 3; left--) {
       std::uint32_t found = at;
       bool ear = false;
-      for (int effort = 0; effort < 3 && !ear; effort++) {
+      for (int effort = tests_ > most_tests_ ? 2 : 0; effort < 3 && !ear; effort++) {
         std::size_t seen = 0;
         for (; seen < left && !ear; seen++, found = next_[found])
           if ((ear = fits(found, effort))) break;
@@ -64,6 +65,7 @@ class EarClipper {
 
   bool fits(std::uint32_t i, int effort) {
     const double area = turn(i);
+    tests_++;
     if (effort == 0) return area > flat_ && empty(i);
     if (effort == 1) return std::abs(area) <= flat_;  // takes nothing away from what is left to cover
     return area > 0;
@@ -77,7 +79,7 @@ class EarClipper {
     const glm::dvec2 a = points_[before], b = points_[i], c = points_[after];
     const glm::dvec2 lower = glm::min(glm::min(a, b), c), upper = glm::max(glm::max(a, b), c);
     for (std::uint32_t k = next_[after]; k != before; k = next_[k]) {
-      if (++tests_ > most_tests) return false;
+      if (++tests_ > most_tests_) return false;
       const glm::dvec2 &p = points_[k];
       if (p.x < lower.x || p.x > upper.x || p.y < lower.y || p.y > upper.y || p == a || p == b || p == c) continue;
       const double u = cross(a, b, p), v = cross(b, c, p), w = cross(c, a, p);
@@ -108,7 +110,7 @@ class EarClipper {
   std::vector<std::uint32_t> next_, previous_;
   std::vector<char> blocking_;
   std::vector<std::uint32_t> &triangles_;
-  std::size_t reflex_ = 0, tests_ = 0;
+  std::size_t reflex_ = 0, tests_ = 0, most_tests_ = 0;
   double flat_ = 0;
 };
 

@@ -9,7 +9,8 @@
 namespace sunstone {
 
 // Appends n - 2 triangles, three numbers of corners each, with the polygon's winding; those of repeated or collinear corners have no area. Ear
-// clipping in double precision ([Meisters75]). Returns false where the polygon crosses itself and what comes out is not a partition of it.
+// clipping in double precision ([Meisters75]). Returns false where the polygon crosses itself, or is too intricate to look at in full, and what comes
+// out is not a partition of it.
 bool triangulate_polygon(std::span<const glm::vec3> corners, std::vector<std::uint32_t> &triangles);
 
 }  // namespace sunstone

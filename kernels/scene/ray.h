@@ -4,7 +4,8 @@
 // Every box of every layout is tested by one function, the slabs of prepare_ray: the ray meets the plane at bound b at
 //   t(b) = fma(b, reciprocal, offset).
 // That is the rounding of a monotone function, so where one box contains another, so do their intervals, exactly. It is also conservative
-// [Woop13, Ize13]: the offsets move near planes nearer and far planes farther by more than the edge test of triangle.h and the slabs themselves can err.
+// [Woop13, Ize13]: the offsets move near planes nearer and far planes farther by more than the edge test of triangle.h and the slabs themselves can
+// err.
 #ifndef SUN_SCENE_RAY_H
 #define SUN_SCENE_RAY_H
 #include "math/real.h"
@@ -27,7 +28,8 @@ typedef struct Ray {
   uint passed_instance, passed_primitive;
 } Ray;
 
-// The ray's constants have to stay in registers through the walk, which a call to anything that takes their address would prevent (a third of the speed).
+// The ray's constants have to stay in registers through the walk, which a call to anything that takes their address would prevent (a third of the
+// speed).
 #define SUN_INLINE static inline __attribute__((always_inline))
 
 #define SUN_INFINITY as_float(0x7f800000u)
@@ -45,7 +47,9 @@ typedef struct PreparedRay {
 } PreparedRay;
 
 // An interval of t; empty where near > far.
-typedef struct Interval { float near, far; } Interval;
+typedef struct Interval {
+  float near, far;
+} Interval;
 
 SUN_INLINE float pick(float x, float y, float z, int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
 

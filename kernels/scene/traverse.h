@@ -20,7 +20,7 @@ SUN_NAMESPACE_BEGIN
 
 // Buffers of a Tree, as the layout reads them.
 SUN_INLINE TraceScene make_trace_scene(const SUN_GLOBAL uchar *nodes, const SUN_GLOBAL uchar *leaves, const SUN_GLOBAL uint *instance_list,
-                                   const SUN_GLOBAL uint *roots, const SUN_GLOBAL Instance *instances, uint top_root, uint instance_count) {
+                                       const SUN_GLOBAL uint *roots, const SUN_GLOBAL Instance *instances, uint top_root, uint instance_count) {
   TraceScene scene;
   scene.nodes = (const SUN_GLOBAL TraceNode *)nodes;
   scene.leaves = (const SUN_GLOBAL TraceLeaf *)leaves;
@@ -62,12 +62,14 @@ SUN_INLINE int prepare_world_ray(PreparedRay *world, const TraceScene *scene, co
 }
 
 // Carries the ray into an instance's space; t stays the same, so the direction is not normalised. False where the instance cannot be hit.
-SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *ray, const PreparedRay *world, const Search *search, PreparedRay *inside,
-                          Place *place) {
+SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *ray, const PreparedRay *world, const Search *search,
+                              PreparedRay *inside, Place *place) {
   const SUN_GLOBAL Instance *instance = &scene->instances[number];
   place->instance = number;
   const uint passed = search->passed_primitive;
-  place->first_primitive = number > search->passed_instance ? 0 : number < search->passed_instance || passed >= SUN_ID_PRIMITIVE ? SUN_NONE : passed + 1;
+  place->first_primitive = number > search->passed_instance                                 ? 0
+                           : number < search->passed_instance || passed >= SUN_ID_PRIMITIVE ? SUN_NONE
+                                                                                            : passed + 1;
   if (instance->flags & SUN_INSTANCE_IDENTITY) {
     place->world.near = 0.0f;
     place->world.far = SUN_INFINITY;
@@ -75,7 +77,8 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
     *inside = *world;
     return 1;
   }
-  place->world = box_interval(world, instance->lower[0], instance->lower[1], instance->lower[2], instance->upper[0], instance->upper[1], instance->upper[2], 0.0f);
+  place->world = box_interval(world, instance->lower[0], instance->lower[1], instance->lower[2], instance->upper[0], instance->upper[1],
+                              instance->upper[2], 0.0f);
   // A triangle nearer than the world box is pulled back into it, perhaps to behind what the ray passed; one that is not pulled keeps its own t.
   place->from = search->passed_t > place->world.near ? search->passed_t : 0.0f;
   if (!(place->world.near <= place->world.far)) return 0;

@@ -89,7 +89,8 @@ SUN_INLINE InstanceWalk begin_instances(const TraceScene *scene, int alone, ulon
 SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, float from, float limit, ulong *stack, InstanceWalk *walk) {
   while (walk->next == walk->end) {
     uint current = pop_node(stack, &walk->size, limit);
-    while (current != SUN_NONE && scene->nodes[current].count == 0) current = open_node(scene, scene->nodes[current].first, ray, from, limit, stack, &walk->size);
+    while (current != SUN_NONE && scene->nodes[current].count == 0)
+      current = open_node(scene, scene->nodes[current].first, ray, from, limit, stack, &walk->size);
     if (current == SUN_NONE) {
       if (walk->size == 0) return SUN_NONE;
       continue;

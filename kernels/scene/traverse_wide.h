@@ -34,7 +34,9 @@ typedef struct TraceScene {
 #define LANE_BYTES 0x0101010101010101ul
 SUN_INLINE int lowest_byte(ulong bytes) { return (int)((63ul - clz(bytes & (~bytes + 1ul))) >> 3); }
 SUN_INLINE ulong bytes_of8(int8 m) { return as_ulong(convert_char8(m)) & LANE_BYTES; }
-typedef struct LaneSet { ulong low, high; } LaneSet;
+typedef struct LaneSet {
+  ulong low, high;
+} LaneSet;
 #if SUN_WIDTH == 16
 SUN_INLINE LaneSet lanes_of(int16 m) {
   const ulong2 words = as_ulong2(convert_char16(m)) & LANE_BYTES;
@@ -43,7 +45,12 @@ SUN_INLINE LaneSet lanes_of(int16 m) {
   set.high = words.s1;
   return set;
 }
-SUN_INLINE float least_of(float16 a) { const float8 b = SUN_LESSER(a.lo, a.hi); const float4 c = SUN_LESSER(b.lo, b.hi); const float2 d = SUN_LESSER(c.lo, c.hi); return SUN_LESSER(d.x, d.y); }
+SUN_INLINE float least_of(float16 a) {
+  const float8 b = SUN_LESSER(a.lo, a.hi);
+  const float4 c = SUN_LESSER(b.lo, b.hi);
+  const float2 d = SUN_LESSER(c.lo, c.hi);
+  return SUN_LESSER(d.x, d.y);
+}
 SUN_INLINE float greatest_of(float16 a) { return -least_of(-a); }
 #else
 SUN_INLINE LaneSet lanes_of(int8 m) {
@@ -52,25 +59,37 @@ SUN_INLINE LaneSet lanes_of(int8 m) {
   set.high = 0;
   return set;
 }
-SUN_INLINE float least_of(float8 b) { const float4 c = SUN_LESSER(b.lo, b.hi); const float2 d = SUN_LESSER(c.lo, c.hi); return SUN_LESSER(d.x, d.y); }
+SUN_INLINE float least_of(float8 b) {
+  const float4 c = SUN_LESSER(b.lo, b.hi);
+  const float2 d = SUN_LESSER(c.lo, c.hi);
+  return SUN_LESSER(d.x, d.y);
+}
 SUN_INLINE float greatest_of(float8 a) { return -least_of(-a); }
 #endif
-SUN_INLINE float least_of8(float8 b) { const float4 c = SUN_LESSER(b.lo, b.hi); const float2 d = SUN_LESSER(c.lo, c.hi); return SUN_LESSER(d.x, d.y); }
-SUN_INLINE uint least_id8(uint8 a) { const uint4 b = min(a.lo, a.hi); const uint2 c = min(b.lo, b.hi); return min(c.x, c.y); }
+SUN_INLINE float least_of8(float8 b) {
+  const float4 c = SUN_LESSER(b.lo, b.hi);
+  const float2 d = SUN_LESSER(c.lo, c.hi);
+  return SUN_LESSER(d.x, d.y);
+}
+SUN_INLINE uint least_id8(uint8 a) {
+  const uint4 b = min(a.lo, a.hi);
+  const uint2 c = min(b.lo, b.hi);
+  return min(c.x, c.y);
+}
 
 // Takes the lowest lane out of a set that is not empty, into `lane`. (A macro, and not a function of &set: that one went through memory.)
-#define TAKE_LANE(set, lane)                  \
-  if ((set).low) {                            \
-    (lane) = lowest_byte((set).low);          \
-    (set).low &= (set).low - 1;               \
-  } else {                                    \
-    (lane) = 8 + lowest_byte((set).high);     \
-    (set).high &= (set).high - 1;             \
+#define TAKE_LANE(set, lane)              \
+  if ((set).low) {                        \
+    (lane) = lowest_byte((set).low);      \
+    (set).low &= (set).low - 1;           \
+  } else {                                \
+    (lane) = 8 + lowest_byte((set).high); \
+    (set).high &= (set).high - 1;         \
   }
 #define SOME_LANE(set) ((set).low | (set).high)
 
-// A child that waits is a ulong: its box's near t in the upper half (t >= 0, so integers sort like floats), its reference in the lower one. A stack's size
-// stands apart from its entries, so that it stays in a register.
+// A child that waits is a ulong: its box's near t in the upper half (t >= 0, so integers sort like floats), its reference in the lower one. A stack's
+// size stands apart from its entries, so that it stays in a register.
 #define SUN_TRACE_STACK SUN_WIDE_STACK
 
 // Children whose boxes the ray meets between `from` and `limit`.
@@ -181,7 +200,9 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
 }
 
 // The walk over the top tree; its leaves name instances. Its stack is a parameter of its own.
-typedef struct InstanceWalk { int size; } InstanceWalk;
+typedef struct InstanceWalk {
+  int size;
+} InstanceWalk;
 
 SUN_INLINE InstanceWalk begin_instances(const TraceScene *scene, int alone, ulong *stack) {
   InstanceWalk walk;

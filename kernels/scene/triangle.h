@@ -56,7 +56,8 @@ typedef struct Place {
   uint first_primitive;  // at t == passed_t hits count from this number on
 } Place;
 
-// Boxes of this instance with near > limit hold nothing that counts: every t there is clamped to at least that much, unless the world box pulls it back.
+// Boxes of this instance with near > limit hold nothing that counts: every t there is clamped to at least that much, unless the world box pulls it
+// back.
 SUN_INLINE float box_limit(const Place *place, const Search *search) { return search->best_t < place->world.far ? search->best_t : SUN_INFINITY; }
 
 typedef struct Pierced {
@@ -64,7 +65,8 @@ typedef struct Pierced {
   tri_float az, bz, cz;
 } Pierced;
 
-// Twice the signed area a * b - c * d. Where the difference of the rounded products is not 0 its sign is right; where it is 0, the exact remainders tell.
+// Twice the signed area a * b - c * d. Where the difference of the rounded products is not 0 its sign is right; where it is 0, the exact remainders
+// tell.
 #define TRI_AREA(a, b, c, d) ((a) * (b) - (c) * (d))
 #define TRI_REMAINDER(a, b, c, d) (fma((a), (b), -((a) * (b))) - fma((c), (d), -((c) * (d))))
 
@@ -115,8 +117,8 @@ SUN_INLINE void narrow_to_box(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRa
 }
 
 // 2 to 5, for lanes that pierce() let through. t, u and v (of corners 1 and 2) mean something where the result is true.
-SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *ray, const Place *place, const Search *search, const Pierced *p, tri_int pierced,
-                      tri_float *t_hit, tri_float *u_hit, tri_float *v_hit) {
+SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *ray, const Place *place, const Search *search, const Pierced *p,
+                          tri_int pierced, tri_float *t_hit, tri_float *u_hit, tri_float *v_hit) {
   const tri_float det = p->u + p->v + p->w;
   const tri_float inverse = 1.0f / det;
   const tri_float u = p->v * inverse, v = p->w * inverse;
@@ -139,7 +141,9 @@ SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *r
   if (search->want == SUN_WANT_OPAQUE) ok = ok & ((id & SUN_ID_PASSABLE) == 0);
   if (search->want == SUN_WANT_PASSABLE) ok = ok & ((id & SUN_ID_PASSABLE) != 0);
 
-  const uint end_primitive = place->instance < search->best_instance ? SUN_NONE : place->instance == search->best_instance ? search->best_primitive : 0;
+  const uint end_primitive = place->instance < search->best_instance    ? SUN_NONE
+                             : place->instance == search->best_instance ? search->best_primitive
+                                                                        : 0;
   ok = ok & ((t > search->passed_t) | ((t == search->passed_t) & (primitive >= place->first_primitive)));
   ok = ok & ((t < search->best_t) | ((t == search->best_t) & (primitive < end_primitive)));
   *t_hit = t;

@@ -22,8 +22,8 @@ static Ray load_ray(__global const float8 *rays, __global const uint2 *passed, u
 }
 
 SUN_TRACE_KERNEL void trace_closest(__global const float8 *rays, __global const uint2 *passed, __global Hit *hits, uint count, uint want,
-                                   __global const uchar *nodes, __global const uchar *leaves, __global const uint *instance_list, __global const uint *roots,
-                                   __global const Instance *instances, uint top_root, uint instance_count) {
+                                    __global const uchar *nodes, __global const uchar *leaves, __global const uint *instance_list,
+                                    __global const uint *roots, __global const Instance *instances, uint top_root, uint instance_count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   const TraceScene scene = make_trace_scene(nodes, leaves, instance_list, roots, instances, top_root, instance_count);
@@ -31,8 +31,8 @@ SUN_TRACE_KERNEL void trace_closest(__global const float8 *rays, __global const 
 }
 
 SUN_TRACE_KERNEL void trace_any(__global const float8 *rays, __global const uint2 *passed, __global uint *blocked, uint count, uint want,
-                               __global const uchar *nodes, __global const uchar *leaves, __global const uint *instance_list, __global const uint *roots,
-                               __global const Instance *instances, uint top_root, uint instance_count) {
+                                __global const uchar *nodes, __global const uchar *leaves, __global const uint *instance_list,
+                                __global const uint *roots, __global const Instance *instances, uint top_root, uint instance_count) {
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
   const TraceScene scene = make_trace_scene(nodes, leaves, instance_list, roots, instances, top_root, instance_count);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Geometry of OBJ files: what is read, what is dropped and said, polygons, normals, and paths that lead out of the folder.
 #include <cmath>
+#include <ctime>
 
 #include "host/import/obj_files.h"
 #include "import/polygon.h"
@@ -90,6 +91,25 @@ TEST(Polygon, WhatCrossesItselfStillEnds) {
   triangles.clear();
   EXPECT_TRUE(triangulate_polygon(std::vector<glm::vec3>(7, glm::vec3(1)), triangles));
   EXPECT_EQ(triangles.size(), 15u);
+}
+
+TEST(Polygon, ARoundedCircleIsCoveredOnce) {
+  std::vector<glm::vec3> circle;
+  for (int i = 0; i < 10000; i++)
+    circle.push_back({std::round(std::cos(i * 6.2831853e-4) * 1e6) / 1e6, std::round(std::sin(i * 6.2831853e-4) * 1e6) / 1e6, 0});
+  std::vector<std::uint32_t> triangles;
+  EXPECT_TRUE(triangulate_polygon(circle, triangles));
+  EXPECT_NEAR(areas(circle, triangles).gross, 3.14159265, 1e-5);
+}
+
+TEST(Polygon, HostileOutlinesEndSoon) {
+  std::vector<glm::vec3> comb{{0, -1, 0}, {50000, -1, 0}};
+  for (int i = 50000; i >= 0; i--) comb.push_back({i, i * 7919 % 1000, 0});
+  std::vector<std::uint32_t> triangles;
+  const std::clock_t start = std::clock();
+  triangulate_polygon(comb, triangles);
+  EXPECT_EQ(triangles.size(), 3 * (comb.size() - 2));
+  EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, 8);  // about one; sanitizers take their share
 }
 
 TEST(Obj, ReadsAllFormsOfFaces) {

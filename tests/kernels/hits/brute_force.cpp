@@ -41,7 +41,8 @@ struct Bare {
 };
 
 // Calls tell(search, place, t, u, v, primitive) for what counts; it may take the hit into the search.
-template <class Tell> void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell) {
+template <class Tell>
+void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell) {
   const Bare bare(flat);
   PreparedRay world, inside;
   if (flat.instances.empty() || !prepare_world_ray(&world, &bare.scene, &ray)) return;
@@ -62,8 +63,8 @@ template <class Tell> void each_hit(const FlatScene &flat, const Ray &ray, Searc
 }
 
 TraceScene tree_scene(const FlatScene &scene, const Tree &tree) {
-  return make_trace_scene(reinterpret_cast<const uchar *>(tree.nodes.data()), reinterpret_cast<const uchar *>(tree.leaves.data()), tree.instance_list.data(),
-                          tree.roots.data(), scene.instances.data(), tree.top_root, uint(scene.instances.size()));
+  return make_trace_scene(reinterpret_cast<const uchar *>(tree.nodes.data()), reinterpret_cast<const uchar *>(tree.leaves.data()),
+                          tree.instance_list.data(), tree.roots.data(), scene.instances.data(), tree.top_root, uint(scene.instances.size()));
 }
 
 }  // namespace
@@ -71,7 +72,8 @@ TraceScene tree_scene(const FlatScene &scene, const Tree &tree) {
 Hit brute_force(const FlatScene &scene, const TracedRay &from, uint want) {
   const Ray ray = kernel_ray(from);
   Search search = begin_search(&ray, want);
-  each_hit(scene, ray, search, [](Search &s, const Place &place, float t, float u, float v, uint primitive) { take_hit(&s, &place, t, u, v, primitive); });
+  each_hit(scene, ray, search,
+           [](Search &s, const Place &place, float t, float u, float v, uint primitive) { take_hit(&s, &place, t, u, v, primitive); });
   return hit_of_search(&search);
 }
 

@@ -6,8 +6,8 @@
 namespace sunstone::hits {
 namespace {
 
-using kernel::uint;
 using glm::vec3;
+using kernel::uint;
 
 void random_rays(Case &c, Random &random, int count) {
   const vec3 lower = c.scene.bounds.lower, upper = c.scene.bounds.upper, margin = 0.2f * (upper - lower);
@@ -33,7 +33,7 @@ void aimed_rays(Case &c, Random &random, int count) {
     const vec3 target = i % 3 == 0 ? p[0] : i % 3 == 1 ? 0.5f * (p[0] + p[1]) : p[0] + random.unit() * (p[2] - p[0]);
     const vec3 origin = random.in_box(lower - 1.0f, upper + 1.0f);
     c.rays.push_back(make_ray(origin, target - origin));
-    if (i % 4 == 0) c.rays.push_back(make_ray(p[1], p[2] - p[1]));  // within the triangle's plane, along its edge
+    if (i % 4 == 0) c.rays.push_back(make_ray(p[1], p[2] - p[1]));              // within the triangle's plane, along its edge
     if (i % 4 == 1) c.rays.push_back(make_ray(origin, target - origin, 1.0f));  // ends at the surface
   }
 }
@@ -71,9 +71,9 @@ Case boxes_on_floor() {
       c.rays.push_back(make_ray({a, -2, b}, {0, 1, 0}));
       c.rays.push_back(make_ray({-1, 0.25f * b, a}, {1, 0, 0}));
       c.rays.push_back(make_ray({a, 0.25f * b, 7}, {0, 0, -1}));
-      c.rays.push_back(make_ray({7, 0, a}, {-1, 0, 0}));          // within the floor
-      c.rays.push_back(make_ray({a, 0, b}, {1, 0, 1}));           // from within it
-      c.rays.push_back(make_ray({a, 3, b}, {-0.0f, -2, 0}));      // signed zeros
+      c.rays.push_back(make_ray({7, 0, a}, {-1, 0, 0}));      // within the floor
+      c.rays.push_back(make_ray({a, 0, b}, {1, 0, 1}));       // from within it
+      c.rays.push_back(make_ray({a, 3, b}, {-0.0f, -2, 0}));  // signed zeros
       c.rays.push_back(make_ray({a, 1, b}, {1, -1, 0}));
       c.rays.push_back(make_ray({a, 1, b}, {1e-30f, -1, 1e-30f}));
     }
@@ -90,10 +90,10 @@ Case degenerate_triangles() {
     const vec3 a = random.in_box(vec3(-1), vec3(1)), b = random.in_box(vec3(-1), vec3(1));
     soup.triangle(a, a, a);
     soup.triangle(a, b, b);
-    soup.triangle(a, b, a + 0.5f * (b - a));                          // in line
-    soup.triangle(a, b, a + 0.5f * (b - a) + vec3(0, 1e-7f, 0));      // nearly
+    soup.triangle(a, b, a + 0.5f * (b - a));                      // in line
+    soup.triangle(a, b, a + 0.5f * (b - a) + vec3(0, 1e-7f, 0));  // nearly
     soup.triangle(a * 1e-12f, b * 1e-12f, vec3(a.y, b.x, a.z) * 1e-12f);
-    soup.triangle({a.x, a.y, 0}, {b.x, b.y, 0}, {a.y, b.x, 0});       // all in one plane, over one another
+    soup.triangle({a.x, a.y, 0}, {b.x, b.y, 0}, {a.y, b.x, 0});  // all in one plane, over one another
   }
   Case c{"degenerate triangles", soup.finish(), {}};
   random_rays(c, random, 1500);
@@ -105,7 +105,7 @@ Case degenerate_triangles() {
   c.rays.push_back(make_ray({0.25f, 0.25f, 3}, {0, 0, -1}, INFINITY));
   c.rays.push_back(make_ray({0.25f, 0.25f, 3}, {0, 0, -1}, 3.0f));  // t_max at the surface: no hit there
   c.rays.push_back(make_ray({0.25f, 0.25f, 3}, {0, 0, -1}, -1.0f));
-  c.rays.push_back(make_ray({0.25f, 0.25f, 0}, {0, 0, -1}));        // from the surface: none either
+  c.rays.push_back(make_ray({0.25f, 0.25f, 0}, {0, 0, -1}));  // from the surface: none either
   return c;
 }
 
@@ -123,8 +123,8 @@ Case instances() {
   soup.quad({-5, -0.5f, -5}, {-5, -0.5f, 5}, {5, -0.5f, 5}, {5, -0.5f, -5});
   soup.instance(floor, identity);
   soup.instance(box, identity);
-  soup.instance(box, identity);                        // the same again: ties between instances
-  soup.instance(box, translation(1, 0, 0));            // face to face with the first
+  soup.instance(box, identity);              // the same again: ties between instances
+  soup.instance(box, translation(1, 0, 0));  // face to face with the first
   soup.instance(box, multiply(translation(2, 0, 0), scaling(-1, 1, 1)));
   for (int i = 0; i < 30; i++) {
     Matrix m = multiply(rotation(0, random.in(0, 6)), rotation(1, random.in(0, 6)));
@@ -189,8 +189,10 @@ Case sides_and_kinds() {
   for (int i = 0; i < 24; i++) {
     const float z = 0.125f * float(i / 2);  // two at each height, so kinds share a t
     const uint bits = (random.number() & 1 ? SUN_ID_SINGLE_SIDED : 0u) | (random.number() & 1 ? SUN_ID_PASSABLE : 0u);
-    if (i % 3) soup.quad({0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}, bits);
-    else soup.quad({0, 0, z}, {0, 1, z}, {1, 1, z}, {1, 0, z}, bits);
+    if (i % 3)
+      soup.quad({0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}, bits);
+    else
+      soup.quad({0, 0, z}, {0, 1, z}, {1, 1, z}, {1, 0, z}, bits);
   }
   soup.instance(sheets, identity);
   soup.instance(sheets, multiply(translation(0.5f, 0, 0), scaling(-1, 1, 1)));

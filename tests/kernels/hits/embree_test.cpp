@@ -45,7 +45,9 @@ class AgainstEmbree : public testing::Test {
     device_ = test_device();
     if (!device_) GTEST_SKIP() << "SKIP: no OpenCL device";
   }
-  std::vector<kernel::Hit> trace(const FlatScene &scene, const std::vector<TracedRay> &rays) { return Tracer(*device_, scene, Layout::wide16).closest(rays); }
+  std::vector<kernel::Hit> trace(const FlatScene &scene, const std::vector<TracedRay> &rays) {
+    return Tracer(*device_, scene, Layout::wide16).closest(rays);
+  }
   std::optional<Device> device_;
 };
 
@@ -72,8 +74,8 @@ TEST_F(AgainstEmbree, Instances) {
   EXPECT_LE(d.t, 16u);
 }
 
-// Boxes that stand on a floor, seen along the axes. Rays onto the floor's square always hit; those on the grid's lines meet silhouettes of boxes, where
-// either side is right, so t is compared off the lines alone.
+// Boxes that stand on a floor, seen along the axes. Rays onto the floor's square always hit; those on the grid's lines meet silhouettes of boxes,
+// where either side is right, so t is compared off the lines alone.
 TEST_F(AgainstEmbree, CoplanarAxisAlignedTriangles) {
   const Case c = boxes_on_floor();
   std::vector<TracedRay> rays, on_lines;

@@ -118,7 +118,8 @@ TEST(Hits, SlabsNestAndContain) {
     const float scale = std::exp2(random.in(-10, 10));
     vec3 l = scale * random.in_box(vec3(-1), vec3(1)), u = l + scale * random.in_box(vec3(0), vec3(1));
     if (i % 3 == 0) u.y = l.y;
-    const vec3 outer_l = l - (i % 2 ? scale * random.in_box(vec3(0), vec3(1e-6f)) : vec3(0)), outer_u = u + scale * random.in_box(vec3(0), vec3(0.1f));
+    const vec3 outer_l = l - (i % 2 ? scale * random.in_box(vec3(0), vec3(1e-6f)) : vec3(0)),
+               outer_u = u + scale * random.in_box(vec3(0), vec3(0.1f));
     const vec3 origin = scale * random.in_box(vec3(-3), vec3(3)), inside = random.in_box(l, u);
     vec3 direction = inside - origin;
     if (i % 5 == 0) direction[i % 3] = 0;

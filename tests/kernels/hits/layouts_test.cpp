@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hits of every layout on the device are those of brute force on the host: t, u, v bit for bit, instance and primitive. So no layout can change a picture.
+// Hits of every layout on the device are those of brute force on the host: t, u, v bit for bit, instance and primitive. So no layout can change a
+// picture.
 #include <gtest/gtest.h>
 
 #include "kernels/hits/cases.h"
@@ -23,8 +24,10 @@ class Layouts : public testing::Test {
   }
   void load(const FlatScene &scene) {
     for (std::size_t k = 0; k < std::size(layouts); k++) {
-      if (k < tracers_.size()) tracers_[k].load(scene);
-      else tracers_.emplace_back(*device_, scene, layouts[k]);
+      if (k < tracers_.size())
+        tracers_[k].load(scene);
+      else
+        tracers_.emplace_back(*device_, scene, layouts[k]);
     }
   }
   std::optional<Device> device_;

@@ -22,7 +22,10 @@ class Random {
   std::uint32_t number();
   float unit();  // [0, 1)
   float in(float lower, float upper) { return lower + (upper - lower) * unit(); }
-  glm::vec3 in_box(glm::vec3 lower, glm::vec3 upper) { const float x = in(lower.x, upper.x), y = in(lower.y, upper.y); return {x, y, in(lower.z, upper.z)}; }
+  glm::vec3 in_box(glm::vec3 lower, glm::vec3 upper) {
+    const float x = in(lower.x, upper.x), y = in(lower.y, upper.y);
+    return {x, y, in(lower.z, upper.z)};
+  }
   glm::vec3 direction();
 
  private:

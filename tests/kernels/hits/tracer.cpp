@@ -35,7 +35,8 @@ void Tracer::load(const FlatScene &scene) {
   instance_count_ = uint(scene.instances.size());
 }
 
-template <class T> std::vector<T> Tracer::run(const char *name, std::span<const TracedRay> rays, uint want) const {
+template <class T>
+std::vector<T> Tracer::run(const char *name, std::span<const TracedRay> rays, uint want) const {
   std::vector<TraceRay> plain;
   std::vector<std::array<uint, 2>> passed;
   for (const TracedRay &ray : rays) {
@@ -46,7 +47,8 @@ template <class T> std::vector<T> Tracer::run(const char *name, std::span<const 
   const Buffer<std::array<uint, 2>> passed_buffer(device_, std::span<const std::array<uint, 2>>(passed), "passed");
   const Buffer<T> result(device_, rays.size(), "result");
   Kernel kernel(program_, name);
-  kernel.run(rays.size(), ray_buffer, passed_buffer, result, uint(rays.size()), want, nodes_, leaves_, list_, roots_, instances_, top_root_, instance_count_);
+  kernel.run(rays.size(), ray_buffer, passed_buffer, result, uint(rays.size()), want, nodes_, leaves_, list_, roots_, instances_, top_root_,
+             instance_count_);
   return result.download();
 }
 

@@ -22,7 +22,8 @@ class Tracer {
   void load(const FlatScene &scene);
 
  private:
-  template <class T> std::vector<T> run(const char *name, std::span<const TracedRay> rays, kernel::uint want) const;
+  template <class T>
+  std::vector<T> run(const char *name, std::span<const TracedRay> rays, kernel::uint want) const;
   Device device_;
   Layout layout_;
   Program program_;

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "flatten/bvh.h"
+#include "flatten/reinsertion.h"
 #include "kernels/hits/cases.h"
 
 namespace sunstone::hits {
@@ -26,7 +27,8 @@ struct Box {
   bool operator==(const Box &b) const { return lower == b.lower && upper == b.upper; }
 };
 
-template <class T> T read(const std::vector<std::byte> &bytes, std::size_t i) {
+template <class T>
+T read(const std::vector<std::byte> &bytes, std::size_t i) {
   T value;
   EXPECT_LE((i + 1) * sizeof(T), bytes.size());
   std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
@@ -73,8 +75,10 @@ class Walk {
         box.include(instance(tree_.instance_list.at(node.first + i)));
       } else {
         const auto leaf = read<kernel::LeafTriangle>(tree_.leaves, node.first + i);
-        if (!std::isnan(leaf.v[0])) box.include(triangle(leaf.v, leaf.id));
-        else return {};
+        if (!std::isnan(leaf.v[0]))
+          box.include(triangle(leaf.v, leaf.id));
+        else
+          return {};
       }
     }
     EXPECT_LE(node.count, top_ ? 1u : 4u);
@@ -84,7 +88,8 @@ class Walk {
     EXPECT_TRUE(own == box);
     return own;
   }
-  template <class Node> Box visit_wide(uint reference, std::size_t depth, std::size_t waiting) {
+  template <class Node>
+  Box visit_wide(uint reference, std::size_t depth, std::size_t waiting) {
     deepest = std::max(deepest, depth);
     Box box;
     if (reference & SUN_WIDE_LEAF) {
@@ -104,7 +109,8 @@ class Walk {
     stack = std::max(stack, waiting + children);
     EXPECT_GE(children, 2u);
     for (std::size_t slot = 0; slot < std::size(node.child); slot++) {
-      const Box own{vec3(node.plane[0][slot], node.plane[2][slot], node.plane[4][slot]), vec3(node.plane[1][slot], node.plane[3][slot], node.plane[5][slot])};
+      const Box own{vec3(node.plane[0][slot], node.plane[2][slot], node.plane[4][slot]),
+                    vec3(node.plane[1][slot], node.plane[3][slot], node.plane[5][slot])};
       if (own == Box{}) continue;
       EXPECT_TRUE(own == visit_wide<Node>(node.child[slot], depth + 1, waiting + children - 1));
       box.include(own);
@@ -131,7 +137,8 @@ void check(const FlatScene &scene, Layout layout) {
     walk.visit(tree.roots[i]);
     const MeshRange &range = scene.meshes[mesh];
     const std::multiset<uint> got(walk.ids.begin(), walk.ids.end());
-    const std::multiset<uint> expected(scene.triangle_ids.begin() + range.first_triangle, scene.triangle_ids.begin() + range.first_triangle + range.triangle_count);
+    const std::multiset<uint> expected(scene.triangle_ids.begin() + range.first_triangle,
+                                       scene.triangle_ids.begin() + range.first_triangle + range.triangle_count);
     EXPECT_TRUE(got == expected) << "mesh " << mesh << ": " << got.size() << " of " << expected.size();
     EXPECT_LE(walk.stack, room);
     EXPECT_LE(walk.deepest, tree.depth);
@@ -212,6 +219,68 @@ TEST_P(Trees, RefuseAnIdentityInstanceThatIsSmallerThanItsMesh) {
   FlatScene scene = soup.finish();
   scene.instances[0].upper[2] = std::nextafter(1.0f, 0.0f);
   EXPECT_THROW(build_tree(scene, GetParam()), Error);
+}
+
+// A tree of boxes in random order, as bad as trees get: reinsertion has to find much better ones, and to lose nothing.
+TEST(Reinsertion, MakesABadTreeBetter) {
+  Random random(51);
+  constexpr uint leaves = 1024;
+  BinaryTree tree;
+  tree.nodes.resize(2 * leaves - 1);
+  for (uint i = 0; i < leaves; i++) tree.items.push_back(i);
+  for (uint i = 0; i < leaves - 1; i++) tree.nodes[i].first_child = 2 * i + 1;
+  for (uint i = 2 * leaves - 1; i-- > 0;) {
+    BinaryTree::Node &node = tree.nodes[i];
+    Box box;
+    if (i >= leaves - 1) {
+      node.first_item = i - (leaves - 1);
+      node.item_count = 1;
+      const vec3 at = random.in_box(vec3(0), vec3(1));
+      box = {at, at + 0.01f};
+    } else {
+      for (uint child = 2 * i + 1; child < 2 * i + 3; child++) {
+        const auto &from = tree.nodes[child];
+        box.include({vec3(from.lower[0], from.lower[1], from.lower[2]), vec3(from.upper[0], from.upper[1], from.upper[2])});
+      }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+      node.lower[axis] = box.lower[axis];
+      node.upper[axis] = box.upper[axis];
+    }
+  }
+  const auto area = [&] {
+    double sum = 0;
+    for (const auto &n : tree.nodes) {
+      const double x = n.upper[0] - n.lower[0], y = n.upper[1] - n.lower[1], z = n.upper[2] - n.lower[2];
+      sum += x * y + y * z + z * x;
+    }
+    return sum;
+  };
+  const std::vector<BinaryTree::Node> leaves_before(tree.nodes.begin() + leaves - 1, tree.nodes.end());
+  const double before = area();
+  optimize_by_reinsertion(tree, 12);
+  EXPECT_LT(area(), 0.5 * before);
+  ASSERT_EQ(tree.nodes.size(), 2 * leaves - 1);
+  ASSERT_EQ(tree.items.size(), leaves);
+  EXPECT_EQ(std::set<uint>(tree.items.begin(), tree.items.end()).size(), leaves);
+  EXPECT_EQ(tree.nodes[0].item_count, leaves);
+  for (uint i = 0; i < tree.nodes.size(); i++) {
+    const auto &node = tree.nodes[i];
+    if (node.first_child == 0) {
+      const auto &own = leaves_before[tree.items[node.first_item]];  // the box still goes with its item
+      EXPECT_TRUE(std::equal(own.lower, own.lower + 3, node.lower) && std::equal(own.upper, own.upper + 3, node.upper));
+      continue;
+    }
+    EXPECT_GT(node.first_child, i);
+    const auto &a = tree.nodes[node.first_child], &b = tree.nodes[node.first_child + 1];
+    EXPECT_EQ(a.first_item, node.first_item);
+    EXPECT_EQ(b.first_item, a.first_item + a.item_count);
+    EXPECT_EQ(node.item_count, a.item_count + b.item_count);
+    for (int axis = 0; axis < 3; axis++) {
+      EXPECT_EQ(node.lower[axis], std::min(a.lower[axis], b.lower[axis]));
+      EXPECT_EQ(node.upper[axis], std::max(a.upper[axis], b.upper[axis]));
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Trees, testing::Values(Layout::binary, Layout::wide8, Layout::wide16), [](const auto &info) {

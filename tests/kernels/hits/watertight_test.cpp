@@ -22,13 +22,16 @@ struct Closed {
   std::vector<std::array<vec3, 3>> triangles;
 };
 
-template <class Radius> Closed ball(const char *name, int rings, Radius &&radius, const Matrix &to_world, float aspect = 1.0f) {
+template <class Radius>
+Closed ball(const char *name, int rings, Radius &&radius, const Matrix &to_world, float aspect = 1.0f) {
   const int sectors = 2 * rings;
   std::vector<vec3> points;
   for (int j = 0; j <= rings; j++)
     for (int i = 0; i < sectors; i++) {
       const double theta = M_PI * j / rings, phi = 2 * M_PI * i / sectors;
-      const vec3 d = j == 0 ? vec3(0, 1, 0) : j == rings ? vec3(0, -1, 0) : vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
+      const vec3 d = j == 0       ? vec3(0, 1, 0)
+                     : j == rings ? vec3(0, -1, 0)
+                                  : vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
       points.push_back(d * radius(j == 0 || j == rings ? 0 : i, j) * vec3(aspect, 1, 1));
     }
   Closed closed{name, {}, {}};
@@ -38,7 +41,8 @@ template <class Radius> Closed ball(const char *name, int rings, Radius &&radius
     soup.triangle(a, b, c);
     const auto world = [&](vec3 p) {
       vec3 w;
-      for (int row = 0; row < 3; row++) w[row] = to_world[4 * row] * p.x + to_world[4 * row + 1] * p.y + to_world[4 * row + 2] * p.z + to_world[4 * row + 3];
+      for (int row = 0; row < 3; row++)
+        w[row] = to_world[4 * row] * p.x + to_world[4 * row + 1] * p.y + to_world[4 * row + 2] * p.z + to_world[4 * row + 3];
       return w;
     };
     closed.triangles.push_back({world(a), world(b), world(c)});
@@ -115,8 +119,10 @@ TEST_P(Watertight, NothingEscapes) {
   std::optional<Tracer> tracer;
   std::size_t total = 0;
   for (const Closed &mesh : closed_meshes()) {
-    if (tracer) tracer->load(mesh.scene);
-    else tracer.emplace(*device, mesh.scene, GetParam());
+    if (tracer)
+      tracer->load(mesh.scene);
+    else
+      tracer.emplace(*device, mesh.scene, GetParam());
     const std::vector<TracedRay> rays = rays_at_edges(mesh, count);
     const std::vector<kernel::Hit> hits = tracer->closest(rays);
     const std::vector<uint> any = tracer->any(rays);
