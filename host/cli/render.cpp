@@ -95,9 +95,11 @@ Film Render::whole_film() const {
       // Nothing new was rendered: the earlier film as it is.
       Film same = *earlier_;
       same.information = film.information;
+      same.interrupted = interrupted();
       return same;
     }
     add_film(film, *earlier_);
+    film.interrupted = interrupted();  // whatever ended the earlier run, this one goes on
   }
   return film;
 }
@@ -193,7 +195,7 @@ void Render::run() {
   write_outputs();
   write_checkpoint();
   if (!o_.stats.empty()) {
-    const std::string text = render_stats(session_, {startup_, render_seconds_, reproducible_});
+    const std::string text = render_stats(session_, film, {startup_, render_seconds_, reproducible_});
     write_file(o_.stats, std::as_bytes(std::span(text)));
   }
   if (film.clamped) notices_.note("", fmt::format("{} contributions were beyond the film's range and clamped", film.clamped));

@@ -5,8 +5,7 @@
 
 namespace sunstone {
 
-std::string render_stats(const Session &session, const RenderTimes &times) {
-  const Film &film = session.renderer->film();
+std::string render_stats(const Session &session, const Film &film, const RenderTimes &times) {
   const RenderCounts &counts = session.renderer->counts();
   const double seconds = times.render > 0 ? times.render : 1e-9;
   nlohmann::ordered_json j;

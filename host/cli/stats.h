@@ -12,6 +12,7 @@ struct RenderTimes {
   std::string reproducible;  // yes, no, or unknown
 };
 
-std::string render_stats(const Session &session, const RenderTimes &times);
+// `film` is what was written: with --resume it holds more samples than this session rendered, and the times are of these alone.
+std::string render_stats(const Session &session, const Film &film, const RenderTimes &times);
 
 }  // namespace sunstone

@@ -144,10 +144,12 @@ DeviceInfo choose_device(const std::vector<DeviceInfo> &devices, const std::stri
     throw Error("", "no OpenCL device was found" + reasons,
                 "for the CPU install pocl-opencl-icd; for a GPU its vendor's driver, or mesa-opencl-icd with RUSTICL_ENABLE set; `sunstone devices` lists what is seen");
   }
+  // Units of the vectors that they work on: rusticl's CPU device counts more units than there are cores, each a quarter as wide.
   const auto most_units = [&](auto &&wanted) -> const DeviceInfo * {
     const DeviceInfo *best = nullptr;
+    const auto width = [](const DeviceInfo &d) { return d.compute_units * d.native_float_width; };
     for (const DeviceInfo &d : usable)
-      if (wanted(d) && (!best || d.compute_units > best->compute_units)) best = &d;
+      if (wanted(d) && (!best || width(d) > width(*best))) best = &d;
     return best;
   };
   const std::string want = lower(selector);

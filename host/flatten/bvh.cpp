@@ -17,7 +17,6 @@
 #include "flatten/layouts.h"
 #include "flatten/reinsertion.h"
 
-
 namespace sunstone {
 namespace {
 

@@ -83,7 +83,9 @@ TEST(Render, CheckpointAndResumeEqualOneRun) {
   render(folder, {"--spp", "7", "-o", "whole.film"});
   render(folder, {"--spp", "3", "--checkpoint", "part.film", "-o", "part.png"});
   EXPECT_NE(hash_of(folder, "part.film"), hash_of(folder, "whole.film"));
-  render(folder, {"--spp", "7", "--resume", "part.film", "-o", "resumed.film"});
+  render(folder, {"--spp", "7", "--resume", "part.film", "-o", "resumed.film", "--stats", "stats.json"});
+  EXPECT_EQ(read_json(folder / "stats.json")["film_hash"], hash_of(folder, "resumed.film")) << "of what was written, not of what was added";
+  EXPECT_EQ(read_json(folder / "stats.json")["samples_per_pixel"], 7);
   EXPECT_EQ(hash_of(folder, "resumed.film"), hash_of(folder, "whole.film"));
   EXPECT_EQ(read_film(folder / "resumed.film").samples, read_film(folder / "whole.film").samples);
   // Once more: there is nothing left to do, and the picture is the same.

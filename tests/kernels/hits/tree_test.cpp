@@ -258,7 +258,7 @@ TEST(Reinsertion, MakesABadTreeBetter) {
   };
   const std::vector<BinaryTree::Node> leaves_before(tree.nodes.begin() + leaves - 1, tree.nodes.end());
   const double before = area();
-  optimize_by_reinsertion(tree, 12);
+  optimize_by_reinsertion(tree, 40);
   EXPECT_LT(area(), 0.5 * before);
   ASSERT_EQ(tree.nodes.size(), 2 * leaves - 1);
   ASSERT_EQ(tree.items.size(), leaves);
