@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "device/probe.h"
 #include "device/state.h"
 
 namespace sunstone {
@@ -115,6 +116,12 @@ std::string DeviceInfo::description() const {
 }
 
 std::vector<DeviceInfo> list_devices(Notices &notices) {
+  static const bool probed = (leave_out_broken_drivers(notices), true);  // the loader reads its drivers once a process
+  (void)probed;
+  return list_devices_here(notices);
+}
+
+std::vector<DeviceInfo> list_devices_here(Notices &notices) {
   std::vector<DeviceInfo> devices;
   int index = 0;
   for (const Found &found : find_devices([&](const std::string &place, const std::string &text) { notices.warning(place, text); })) {

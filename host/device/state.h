@@ -74,6 +74,9 @@ template <class Work> auto guarded(const std::string &place, Work &&work) {
   }
 }
 
+// list_devices without trying the drivers in a child first.
+std::vector<DeviceInfo> list_devices_here(Notices &notices);
+
 // The cl::Device of list_devices' index.
 cl::Device device_at(int index);
 

@@ -90,7 +90,9 @@ SUN_KERNEL void shade(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex *ve
     mask glowing = present & (max_of3(emission) > 0.0f);
     mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
     mask limited = present & (depth >= (uint_n)(frame->max_depth));
-    mask scatters = present & !limited & !unlit;
+    // At the limit a path may still go straight on through smooth thin glass, which is no scattering.
+    mask passable = (surface.material_flags & (uint_n)(SUN_MATERIAL_PASSABLE)) != (uint_n)(0);
+    mask scatters = present & !unlit & (!limited | passable);
     // Why the path ends here, if it does.
     uint_n reason = glowing ? (uint_n)(SUN_ENDED_LIGHT) : limited ? (uint_n)(SUN_ENDED_DEPTH) : (uint_n)(SUN_ENDED_ABSORBED);
     mask turned = found & !found, shadow = turned;
@@ -101,14 +103,14 @@ SUN_KERNEL void shade(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex *ve
       if ((frame->flags & SUN_FRAME_DIRECT) && frame->emitter_count > 0) {
         real u_choice = sample_1d(&key, SUN_DIM_EMITTER(path.vertex));
         vec2 u_point = sample_2d(&key, SUN_DIM_EMITTER_POINT(path.vertex));
-        DirectSample direct = sample_direct(scene, &surface, &lobes, wo_local, u_choice, u_point, scatters);
+        DirectSample direct = sample_direct(scene, &surface, &lobes, wo_local, u_choice, u_point, scatters & !limited);
         store_shadow_rays(shadow_rays, lanes.slot, &direct, mul3(throughput, direct.contribution), &path, depth + (uint_n)(1));
         shadow = direct.valid;
       }
       real u_lobe = sample_1d(&key, SUN_DIM_LOBE(path.vertex));
       vec2 u = sample_2d(&key, SUN_DIM_DIRECTION(path.vertex));
       Scatter scatter = sample_scatter(scene, &surface, &lobes, bsdf.solid, wo_local, u_lobe, u);
-      turned = scatters & scatter.valid & !scatter.straight;
+      turned = scatters & !limited & scatter.valid & !scatter.straight;
       straight = straight | (scatters & scatter.valid & scatter.straight);
       throughput = select3(scatters & scatter.valid, mul3(throughput, scatter.weight), throughput);
       path.origin_x = turned ? scatter.origin.x : path.origin_x;
