@@ -198,4 +198,12 @@ TEST(Render, CropsAndTransparentBackgrounds) {
   EXPECT_EQ(read_image(folder / "a.png").channels, 4);
 }
 
+// The hashes that the program ships with are those that it gives: a change of the renderer that changes pictures changes them on purpose.
+TEST(Verify, ThisDeviceGivesTheBitsThatShip) {
+  const Ended ended = run_sunstone({"verify", "--json"});
+  EXPECT_EQ(ended.status, 0) << ended.out << ended.error;
+  const nlohmann::json j = nlohmann::json::parse(ended.out);
+  EXPECT_FALSE(j.empty());
+}
+
 }  // namespace sunstone::test

@@ -21,7 +21,6 @@ RenderSettings sharp(int width, int height, unsigned max_depth) {
 }
 
 Case with_sky(const std::string &file, glm::vec3 radiance) {
-  Notices notices;
   Scene scene = Case::file(scene_file(file)).scene();
   set_sky(scene, radiance);
   return Case(std::move(scene));
@@ -271,6 +270,31 @@ TEST(Oracle, HalfAVeil) {
     set_sky(masked, {1, 1, 0});
     look_flat(masked, {0, 0, 5}, {0, 0, 0}, 0.5f);
     EXPECT_EQ(seen(std::move(masked), alpha < 0.5f ? glm::vec3(1, 1, 0) : glm::vec3(2, 4, 6), 2, 1e-6, 2), "");
+  }
+}
+
+// Going straight on through alpha or smooth thin glass is no scattering: light seen directly is there at --max-depth 0, and so at every limit.
+TEST(Oracle, NullEventsTakeNoDepth) {
+  for (const char *integrator : {"path", "pure"}) {
+    Scene scene;
+    Material veil = matt({0, 0, 0});
+    veil.alpha_mode = AlphaMode::blend;
+    veil.alpha = 0.25f;
+    for (int i = 0; i < 3; i++) {
+      add(scene, quad({0, 0, 1 + 0.2f * static_cast<float>(i)}, {2, 0, 0}, {0, 2, 0}), thin_glass({0.8f, 0.9f, 1}));
+      add(scene, quad({0, 0, 1.1f + 0.2f * static_cast<float>(i)}, {2, 0, 0}, {0, 2, 0}), veil);
+    }
+    add(scene, quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}), lamp({0.5f, 0.6f, 0.7f}));
+    look_flat(scene, {0, 0, 5}, {0, 0, 0}, 0.5f);
+    const Case behind_glass(std::move(scene));
+    std::vector<Film> films;
+    for (const unsigned max_depth : {0u, 1u, 5u}) {
+      RenderSettings s = sharp(8, 8, max_depth);
+      s.integrator = integrator;
+      films.push_back(render(behind_glass, s, {0, 16}).film);
+    }
+    EXPECT_GT(mean(films[0], "bounce.0", whole(films[0]), 1), 0.1) << integrator;
+    for (const Film &film : films) EXPECT_EQ(layer_hash(film, *film.find("bounce.0")), layer_hash(films[0], *films[0].find("bounce.0"))) << integrator;
   }
 }
 

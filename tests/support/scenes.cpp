@@ -2,7 +2,6 @@
 #include "support/scenes.h"
 
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "scene/default_view.h"
 
