@@ -42,9 +42,9 @@ class Tracer {
     const uint count = uint(rays.size()), want = 0;
     const auto start = std::chrono::steady_clock::now();
     if (any)
-      any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, instances_, top_root_, instance_count_);
+      any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, top_root_, instances_, instance_count_);
     else
-      closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, instances_, top_root_, instance_count_);
+      closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, top_root_, instances_, instance_count_);
     device_.finish();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

@@ -61,6 +61,7 @@ DeviceInfo describe(const cl::Platform &platform, const cl::Device &device) {
   info.max_work_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
   info.local_memory = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
   info.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
+  info.unified_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
   info.atomics_64 = has_extension(extensions, "cl_khr_int64_base_atomics");
   info.correct_divide_sqrt = (device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>() & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
   if (!device.getInfo<CL_DEVICE_AVAILABLE>()) info.unusable = "the driver says it is not available";

@@ -18,6 +18,7 @@ struct DeviceInfo {
   unsigned compute_units = 0;
   std::size_t memory = 0, max_allocation = 0, max_work_group = 0, local_memory = 0;
   unsigned native_float_width = 1;
+  bool unified_memory = false;      // the host's own
   bool atomics_64 = false;          // cl_khr_int64_base_atomics
   bool correct_divide_sqrt = false; // reports CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT
   bool available = true;            // compiler and device available, 32-bit atomics there

@@ -100,7 +100,7 @@ void StageRunner::run(Stage stage) {
       break;
     case Stage::generate: generate_.run(bundles, frame_, scene_.records, pool_.paths, pool_.status, rays, pool_.counts); break;
     case Stage::intersect:
-      intersect_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.instances, scene_.top_root, pool_.paths,
+      intersect_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.instances, pool_.paths,
                      pool_.status, pool_.hits, rays, pool_.counts);
       break;
     case Stage::first_hit:

@@ -2,6 +2,7 @@
 // Accessors of the path pool, made from the list of fields: LANES paths at a time, in registers as vectors, in memory as records or columns.
 #ifndef SUN_PATH_PATH_H
 #define SUN_PATH_PATH_H
+#include "math/record.h"
 #include "math/vector.h"
 #include "shared/path_words.h"
 #include "shared/queues.h"
@@ -35,31 +36,18 @@ SUN_FN uint path_word(const Paths *paths, uint slot, uint field) {
 // Lanes that are switched off have to name a slot of the pool too.
 SUN_FN Path path_load(const Paths *paths, uint_n slots) {
   Path path;
-  uint slot[LANES], word[LANES];
-  LANES_STORE(slots, slot);
-#define PATH_FIELD(type, name)                                                                                                   \
-  for (int lane = 0; lane < LANES; lane++) word[lane] = paths->words[path_word(paths, slot[lane], SUN_PATH_##name)];             \
-  path.name = PATH_LANES_OF_##type(LANES_LOAD(word));
+  uint_n words[SUN_PATH_WORDS];
+  if (SUN_COLUMNS)
+    for (uint field = 0; field < SUN_PATH_WORDS; field++) words[field] = gather_uint(paths->words + field * paths->pool, slots);
+  else
+    load_records(paths->words, slots, words);
+#define PATH_FIELD(type, name) path.name = PATH_LANES_OF_##type(words[SUN_PATH_##name]);
 #include "shared/path_fields.h"
 #undef PATH_FIELD
   return path;
 }
 
-SUN_FN void path_store(const Paths *paths, uint_n slots, mask active, const Path *path) {
-  uint slot[LANES];
-  int on[LANES];
-  uint word[SUN_PATH_WORDS][LANES];
-  LANES_STORE(slots, slot);
-  LANES_STORE(active, on);
-#define PATH_FIELD(type, name) LANES_STORE(PATH_BITS_OF_##type(path->name), word[SUN_PATH_##name]);
-#include "shared/path_fields.h"
-#undef PATH_FIELD
-  for (int lane = 0; lane < LANES; lane++)
-    if (on[lane])
-      for (uint field = 0; field < SUN_PATH_WORDS; field++) paths->words[path_word(paths, slot[lane], field)] = word[field][lane];
-}
-
-// LANES words of a column of its own, such as the status.
+// LANES words of a column, such as the status.
 SUN_FN void store_uint(SUN_GLOBAL uint *table, uint_n index, mask active, uint_n value) {
   uint at[LANES], word[LANES];
   int on[LANES];
@@ -68,6 +56,17 @@ SUN_FN void store_uint(SUN_GLOBAL uint *table, uint_n index, mask active, uint_n
   LANES_STORE(active, on);
   for (int lane = 0; lane < LANES; lane++)
     if (on[lane]) table[at[lane]] = word[lane];
+}
+
+SUN_FN void path_store(const Paths *paths, uint_n slots, mask active, const Path *path) {
+  uint_n words[SUN_PATH_WORDS];
+#define PATH_FIELD(type, name) words[SUN_PATH_##name] = PATH_BITS_OF_##type(path->name);
+#include "shared/path_fields.h"
+#undef PATH_FIELD
+  if (SUN_COLUMNS)
+    for (uint field = 0; field < SUN_PATH_WORDS; field++) store_uint(paths->words + field * paths->pool, slots, active, words[field]);
+  else
+    store_records(paths->words, slots, active, words);
 }
 
 SUN_NAMESPACE_END

@@ -5,6 +5,7 @@
 #ifndef SUN_SCENE_EMITTER_H
 #define SUN_SCENE_EMITTER_H
 #include "math/elementary.h"
+#include "math/record.h"
 #include "math/vector.h"
 #include "shared/emitter.h"
 
@@ -20,7 +21,7 @@ SUN_FN uint multiply_high(uint a, uint b) { return (uint)(((ulong)a * b) >> 32);
 #endif
 
 typedef struct EmitterChoice {
-  uint_n index;
+  uint_n index, kind, a, b;  // as in Emitter
   real pmf;
 } EmitterChoice;
 
@@ -30,18 +31,15 @@ SUN_FN EmitterChoice choose_emitter(const SUN_GLOBAL Emitter *emitters, uint cou
   uint_n slot = multiply_high(scaled, (uint_n)(count));
   uint_n rest = scaled * (uint_n)(count);
   real fraction = real_of_uint(rest >> 8) * 5.96046448e-8f;
-  uint at[LANES], index[LANES];
-  float lane_fraction[LANES], pmf[LANES];
-  LANES_STORE(slot, at);
-  LANES_STORE(fraction, lane_fraction);
-  for (int lane = 0; lane < LANES; lane++) {
-    const SUN_GLOBAL Emitter *emitter = emitters + at[lane];
-    index[lane] = lane_fraction[lane] < emitter->threshold ? at[lane] : emitter->alias;
-    pmf[lane] = emitters[index[lane]].pmf;
-  }
+  Quad quad;
+  GATHER_QUAD(quad, emitters, slot, threshold);
   EmitterChoice choice;
-  choice.index = LANES_LOAD(index);
-  choice.pmf = LANES_LOAD(pmf);
+  choice.index = fraction < real_of_bits(quad.x) ? slot : quad.y;
+  GATHER_QUAD(quad, emitters, choice.index, kind);
+  choice.kind = quad.x;
+  choice.a = quad.y;
+  choice.b = quad.z;
+  choice.pmf = real_of_bits(quad.w);
   return choice;
 }
 

@@ -28,10 +28,6 @@ typedef struct Ray {
   uint passed_instance, passed_primitive;
 } Ray;
 
-// The ray's constants have to stay in registers through the walk, which a call to anything that takes their address would prevent (a third of the
-// speed).
-#define SUN_INLINE static inline __attribute__((always_inline))
-
 #define SUN_INFINITY as_float(0x7f800000u)
 #define SUN_LARGEST 3.40282347e+38f
 // Not fmin and fmax: their rules for NaN cost a fifth of a traversal. Arguments are named values, not expressions.

@@ -2,6 +2,7 @@
 // The flattened scene as kernels see it: its buffers, bundled at the door of a kernel.
 #ifndef SUN_SCENE_SCENE_H
 #define SUN_SCENE_SCENE_H
+#include "math/record.h"
 #include "scene/texture.h"
 #include "shared/emitter.h"
 #include "shared/frame.h"
@@ -30,10 +31,15 @@ typedef struct Scene {
   TexturePages pages;
 } Scene;
 
+// The buffers of a scene, as every kernel that shades takes them.
+#define SCENE_PARAMETERS                                                                                                                  \
+  const SUN_GLOBAL Vertex *vertices, const SUN_GLOBAL VertexExtra *extras, const SUN_GLOBAL Triangle *triangles,                          \
+      const SUN_GLOBAL Instance *instances, const SUN_GLOBAL uint *records, const SUN_GLOBAL uint *page0, const SUN_GLOBAL uint *page1, \
+      const SUN_GLOBAL uint *page2, const SUN_GLOBAL uint *page3
+#define SCENE_ARGUMENTS vertices, extras, triangles, instances, records, page0, page1, page2, page3
+
 // `records` is one buffer of all small tables; the frame says where each begins.
-SUN_FN Scene open_scene(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex *vertices, const SUN_GLOBAL VertexExtra *extras,
-                        const SUN_GLOBAL Triangle *triangles, const SUN_GLOBAL Instance *instances, const SUN_GLOBAL uint *records,
-                        const SUN_GLOBAL uint *page0, const SUN_GLOBAL uint *page1, const SUN_GLOBAL uint *page2, const SUN_GLOBAL uint *page3) {
+SUN_FN Scene open_scene(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS) {
   Scene scene;
   scene.frame = frame;
   scene.vertices = vertices;
@@ -56,27 +62,28 @@ SUN_FN Scene open_scene(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex *
   return scene;
 }
 
-// A field of LANES records: GATHER_RECORD(real, scene->materials, index, roughness).
+// A field of LANES records: GATHER_FLOAT(roughness, scene->materials, index, roughness).
 #define GATHER_FLOAT(out, records, index, field)                                    \
   do {                                                                              \
     uint gather_at[LANES];                                                          \
     float gather_value[LANES];                                                      \
     LANES_STORE(index, gather_at);                                                  \
-    for (int lane = 0; lane < LANES; lane++) gather_value[lane] = (records)[gather_at[lane]].field; \
+    for (int lane = 0; lane < LANES; lane++) gather_value[lane] = LANE_WORD(float, (records)[gather_at[lane]].field); \
     (out) = LANES_LOAD(gather_value);                                               \
   } while (0)
 #define GATHER_UINT(out, records, index, field)                                     \
   do {                                                                              \
     uint gather_at[LANES], gather_value[LANES];                                     \
     LANES_STORE(index, gather_at);                                                  \
-    for (int lane = 0; lane < LANES; lane++) gather_value[lane] = (records)[gather_at[lane]].field; \
+    for (int lane = 0; lane < LANES; lane++) gather_value[lane] = LANE_WORD(uint, (records)[gather_at[lane]].field); \
     (out) = LANES_LOAD(gather_value);                                               \
   } while (0)
-#define GATHER_VEC3(out, records, index, field)          \
-  do {                                                   \
-    GATHER_FLOAT((out).x, records, index, field[0]);     \
-    GATHER_FLOAT((out).y, records, index, field[1]);     \
-    GATHER_FLOAT((out).z, records, index, field[2]);     \
+// Three floats at a multiple of 16 bytes.
+#define GATHER_VEC3(out, records, index, field)                                                         \
+  do {                                                                                                  \
+    Quad vec3_quad;                                                                                     \
+    GATHER_QUAD(vec3_quad, records, index, field);                                                      \
+    (out) = make_vec3(real_of_bits(vec3_quad.x), real_of_bits(vec3_quad.y), real_of_bits(vec3_quad.z)); \
   } while (0)
 
 SUN_NAMESPACE_END

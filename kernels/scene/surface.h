@@ -17,10 +17,12 @@ typedef struct HitLanes {
 
 SUN_FN HitLanes load_hits(const SUN_GLOBAL Hit *hits, uint_n slots, mask active) {
   HitLanes lanes;
-  GATHER_FLOAT(lanes.t, hits, slots, t);
-  GATHER_FLOAT(lanes.u, hits, slots, u);
-  GATHER_FLOAT(lanes.v, hits, slots, v);
-  GATHER_UINT(lanes.instance, hits, slots, instance);
+  Quad hit;
+  GATHER_QUAD(hit, hits, slots, t);
+  lanes.t = real_of_bits(hit.x);
+  lanes.u = real_of_bits(hit.y);
+  lanes.v = real_of_bits(hit.z);
+  lanes.instance = hit.w;
   GATHER_UINT(lanes.primitive, hits, slots, primitive);
   lanes.hit = active & (lanes.instance != (uint_n)(SUN_NONE));
   lanes.instance = lanes.hit ? lanes.instance : (uint_n)(0);
@@ -31,40 +33,77 @@ SUN_FN HitLanes load_hits(const SUN_GLOBAL Hit *hits, uint_n slots, mask active)
 // The corners of LANES triangles, in world space.
 typedef struct Corners {
   vec3 p[3];
+  real u[3];        // texture coordinate
   uint_n vertex[3];
   uint_n material;
   uint_n flags;     // of the instance
   mask moved;       // not the identity
 } Corners;
 
-SUN_FN vec3 instance_point(const Scene *scene, uint_n instance, vec3 p) {
-  real m[12];
-  for (int i = 0; i < 12; i++) GATHER_FLOAT(m[i], scene->instances, instance, to_world[i]);
+typedef struct Matrix {
+  real m[12];  // 3x4, row major
+} Matrix;
+
+SUN_INLINE void matrix_row(Matrix *matrix, int row, Quad quad) {
+  matrix->m[4 * row] = real_of_bits(quad.x);
+  matrix->m[4 * row + 1] = real_of_bits(quad.y);
+  matrix->m[4 * row + 2] = real_of_bits(quad.z);
+  matrix->m[4 * row + 3] = real_of_bits(quad.w);
+}
+
+SUN_FN Matrix instance_to_world(const Scene *scene, uint_n instance) {
+  Matrix matrix;
+  for (int row = 0; row < 3; row++) {
+    Quad quad;
+    GATHER_QUAD(quad, scene->instances, instance, to_world[4 * row]);
+    matrix_row(&matrix, row, quad);
+  }
+  return matrix;
+}
+SUN_FN Matrix instance_to_object(const Scene *scene, uint_n instance) {
+  Matrix matrix;
+  for (int row = 0; row < 3; row++) {
+    Quad quad;
+    GATHER_QUAD(quad, scene->instances, instance, to_object[4 * row]);
+    matrix_row(&matrix, row, quad);
+  }
+  return matrix;
+}
+
+SUN_FN vec3 transform_point(const Matrix *matrix, vec3 p) {
+  const real *m = matrix->m;
   return make_vec3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7], m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
 }
 // Directions along the surface go by the matrix, normals by its inverse transposed, so that a mirrored front stays the front.
-SUN_FN vec3 instance_direction(const Scene *scene, uint_n instance, vec3 d) {
-  real m[12];
-  for (int i = 0; i < 12; i++) GATHER_FLOAT(m[i], scene->instances, instance, to_world[i]);
+SUN_FN vec3 transform_direction(const Matrix *matrix, vec3 d) {
+  const real *m = matrix->m;
   return make_vec3(m[0] * d.x + m[1] * d.y + m[2] * d.z, m[4] * d.x + m[5] * d.y + m[6] * d.z, m[8] * d.x + m[9] * d.y + m[10] * d.z);
 }
-SUN_FN vec3 instance_normal(const Scene *scene, uint_n instance, vec3 n) {
-  real m[12];
-  for (int i = 0; i < 12; i++) GATHER_FLOAT(m[i], scene->instances, instance, to_object[i]);
+SUN_FN vec3 transform_normal(const Matrix *to_object, vec3 n) {
+  const real *m = to_object->m;
   return make_vec3(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z);
 }
 
 SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitive) {
   Corners c;
-  GATHER_UINT(c.material, scene->triangles, primitive, material);
+  Quad triangle;
+  GATHER_QUAD(triangle, scene->triangles, primitive, vertex[0]);
+  c.vertex[0] = triangle.x;
+  c.vertex[1] = triangle.y;
+  c.vertex[2] = triangle.z;
+  c.material = triangle.w;
   GATHER_UINT(c.flags, scene->instances, instance, flags);
   c.moved = (c.flags & (uint_n)(SUN_INSTANCE_IDENTITY)) == (uint_n)(0);
   for (int k = 0; k < 3; k++) {
-    GATHER_UINT(c.vertex[k], scene->triangles, primitive, vertex[k]);
-    GATHER_VEC3(c.p[k], scene->vertices, c.vertex[k], position);
+    Quad vertex;
+    GATHER_QUAD(vertex, scene->vertices, c.vertex[k], position[0]);
+    c.p[k] = make_vec3(real_of_bits(vertex.x), real_of_bits(vertex.y), real_of_bits(vertex.z));
+    c.u[k] = real_of_bits(vertex.w);
   }
-  if (ANY(c.moved))
-    for (int k = 0; k < 3; k++) c.p[k] = select3(c.moved, instance_point(scene, instance, c.p[k]), c.p[k]);
+  if (ANY(c.moved)) {
+    Matrix matrix = instance_to_world(scene, instance);
+    for (int k = 0; k < 3; k++) c.p[k] = select3(c.moved, transform_point(&matrix, c.p[k]), c.p[k]);
+  }
   return c;
 }
 
@@ -111,8 +150,7 @@ typedef struct Surface {
 // Texture coordinates and vertex colour at (u, v) of the triangle.
 SUN_FN void surface_coordinates(const Scene *scene, Surface *s, const Corners *c, real u, real v) {
   real corner[3];
-  for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->vertices, c->vertex[k], u);
-  s->uv0[0] = interpolate(corner[0], corner[1], corner[2], u, v);
+  s->uv0[0] = interpolate(c->u[0], c->u[1], c->u[2], u, v);
   for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->vertices, c->vertex[k], v);
   s->uv0[1] = interpolate(corner[0], corner[1], corner[2], u, v);
   if (scene->frame->flags & SUN_FRAME_EXTRAS) {
@@ -145,9 +183,12 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
 
   vec3 vertex_normal[3];
-  for (int k = 0; k < 3; k++) GATHER_VEC3(vertex_normal[k], scene->vertices, c.vertex[k], normal);
+  for (int k = 0; k < 3; k++) GATHER_VEC3(vertex_normal[k], scene->vertices, c.vertex[k], normal[0]);
   vec3 ns = interpolate3(vertex_normal[0], vertex_normal[1], vertex_normal[2], hit->u, hit->v);
-  if (ANY(c.moved)) ns = select3(c.moved, instance_normal(scene, hit->instance, ns), ns);
+  if (ANY(c.moved)) {
+    Matrix to_object = instance_to_object(scene, hit->instance);
+    ns = select3(c.moved, transform_normal(&to_object, ns), ns);
+  }
   real length2 = dot3(ns, ns);
   ns = select3(length2 > 1e-30f, normalize3(ns), front_normal);
   // A shading normal belongs to the front; one that points behind it (bad input) gives way to the geometric one.
@@ -167,10 +208,13 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
     if (ANY(mapped)) {
       vec3 corner_tangent[3];
       real handed;
-      for (int k = 0; k < 3; k++) GATHER_VEC3(corner_tangent[k], scene->extras, c.vertex[k], tangent);
+      for (int k = 0; k < 3; k++) GATHER_VEC3(corner_tangent[k], scene->extras, c.vertex[k], tangent[0]);
       GATHER_FLOAT(handed, scene->extras, c.vertex[0], tangent[3]);
       vec3 tangent = interpolate3(corner_tangent[0], corner_tangent[1], corner_tangent[2], hit->u, hit->v);
-      if (ANY(c.moved)) tangent = select3(c.moved, instance_direction(scene, hit->instance, tangent), tangent);
+      if (ANY(c.moved)) {
+        Matrix to_world = instance_to_world(scene, hit->instance);
+        tangent = select3(c.moved, transform_direction(&to_world, tangent), tangent);
+      }
       mapped = mapped & (dot3(tangent, tangent) > 1e-30f);
       tangent = normalize3(tangent);
       vec3 front_ns = select3(s.front, ns, negate3(ns));
@@ -240,7 +284,7 @@ SUN_FN vec3 surface_emission(const Scene *scene, const Surface *s, mask wanted) 
                (s->front | ((s->material_flags & (uint_n)(SUN_MATERIAL_DOUBLE_SIDED)) != (uint_n)(0)));
   if (ANY(emits)) {
     vec3 value;
-    GATHER_VEC3(value, scene->materials, s->material, emission);
+    GATHER_VEC3(value, scene->materials, s->material, emission[0]);
 #if SUN_TEXTURES
     Texel4 texel = material_texel(scene, s, SUN_SLOT_EMISSION, emits);
     value = mul3(value, make_vec3(texel.r, texel.g, texel.b));
@@ -256,7 +300,7 @@ SUN_FN vec3 surface_emission(const Scene *scene, const Surface *s, mask wanted) 
 // The bsdf's parameters, textures looked up.
 SUN_FN Bsdf surface_bsdf(const Scene *scene, const Surface *s, mask wanted) {
   Bsdf b;
-  GATHER_VEC3(b.base, scene->materials, s->material, base_color);
+  GATHER_VEC3(b.base, scene->materials, s->material, base_color[0]);
 #if SUN_TEXTURES
   mask textured = wanted & ((s->material_flags & (uint_n)(SUN_MATERIAL_TEXTURED)) != (uint_n)(0));
   b.base = mul3(b.base, make_vec3(s->color[0], s->color[1], s->color[2]));
@@ -274,13 +318,15 @@ SUN_FN Bsdf surface_bsdf(const Scene *scene, const Surface *s, mask wanted) {
   b.inside = b.solid & !s->front;
 #if SUN_SPECULAR
   if (ANY(b.specular)) {
-    real roughness, ior;
-    GATHER_FLOAT(b.metallic, scene->materials, s->material, metallic);
-    GATHER_FLOAT(roughness, scene->materials, s->material, roughness);
-    GATHER_FLOAT(b.transmission, scene->materials, s->material, transmission);
-    GATHER_FLOAT(ior, scene->materials, s->material, ior);
-    GATHER_VEC3(b.f0, scene->materials, s->material, f0);
-    GATHER_FLOAT(b.f90, scene->materials, s->material, f90);
+    Quad quad;
+    GATHER_QUAD(quad, scene->materials, s->material, metallic);
+    b.metallic = real_of_bits(quad.x);
+    real roughness = real_of_bits(quad.y);
+    b.transmission = real_of_bits(quad.z);
+    real ior = real_of_bits(quad.w);
+    GATHER_QUAD(quad, scene->materials, s->material, f0[0]);
+    b.f0 = make_vec3(real_of_bits(quad.x), real_of_bits(quad.y), real_of_bits(quad.z));
+    b.f90 = real_of_bits(quad.w);
 #if SUN_TEXTURES
     if (ANY(textured)) {
       Texel4 texel = material_texel(scene, s, SUN_SLOT_METALLIC_ROUGHNESS, textured);
@@ -306,7 +352,7 @@ SUN_FN vec3 surface_absorption(const Scene *scene, const Surface *s, real distan
   mask within = wanted & !s->front & ((s->material_flags & (uint_n)(SUN_MATERIAL_VOLUME)) != (uint_n)(0));
   if (ANY(within)) {
     vec3 a;
-    GATHER_VEC3(a, scene->materials, s->material, absorption);
+    GATHER_VEC3(a, scene->materials, s->material, absorption[0]);
     vec3 passed = make_vec3(exp_real(-a.x * distance), exp_real(-a.y * distance), exp_real(-a.z * distance));
     left = select3(within, passed, left);
   }

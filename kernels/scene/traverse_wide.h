@@ -86,6 +86,17 @@ SUN_INLINE uint least_id8(uint8 a) {
     (lane) = 8 + lowest_byte((set).high); \
     (set).high &= (set).high - 1;         \
   }
+// The highest lane.
+SUN_INLINE int highest_byte(ulong bytes) { return (int)((63ul - clz(bytes)) >> 3); }
+#define TAKE_LAST_LANE(set, lane)                    \
+  if ((set).high) {                                  \
+    (lane) = highest_byte((set).high);               \
+    (set).high ^= 1ul << (8 * (lane));               \
+    (lane) += 8;                                     \
+  } else {                                           \
+    (lane) = highest_byte((set).low);                \
+    (set).low ^= 1ul << (8 * (lane));                \
+  }
 #define SOME_LANE(set) ((set).low | (set).high)
 
 // A child that waits is a ulong: its box's near t in the upper half (t >= 0, so integers sort like floats), its reference in the lower one. A stack's
@@ -136,17 +147,18 @@ SUN_INLINE uint open_node(const SUN_GLOBAL TraceNode *node, const PreparedRay *r
   return (uint)nearest;
 }
 
-// The same where order does not matter.
+// The same where any hit will do: children in their order, which is by area, as the largest is the likeliest to block [Nah14].
 SUN_INLINE uint open_node_unsorted(const SUN_GLOBAL TraceNode *node, const PreparedRay *ray, float from, float limit, ulong *stack, int *size) {
   node_float near;
   LaneSet hit = children_hit(node, ray, from, limit, &near);
   if (!SOME_LANE(hit)) return SUN_NONE;
   int lane;
-  TAKE_LANE(hit, lane)
-  const uint first = node->child[lane];
+  TAKE_LAST_LANE(hit, lane)
+  uint first = node->child[lane];
   while (SOME_LANE(hit)) {
-    TAKE_LANE(hit, lane)
-    stack[(*size)++] = node->child[lane];
+    stack[(*size)++] = first;
+    TAKE_LAST_LANE(hit, lane)
+    first = node->child[lane];
   }
   return first;
 }

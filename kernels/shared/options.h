@@ -51,4 +51,13 @@
 #define SUN_KERNEL __kernel
 #endif
 
+// What a kernel does, as a function that is called. PoCL gives the private arrays of a kernel to each work-item of a group anew (1.5 MB for shade at 64
+// work-items, beyond the cache); those of a function that it calls stand on the stack, at the same place for all. Where vectors are explicit, that is
+// on CPUs; elsewhere it is part of its kernel as ever.
+#if defined(__cplusplus) || (LANES == 1 && SUN_LAYOUT == SUN_LAYOUT_BINARY)
+#define SUN_BODY static inline
+#else
+#define SUN_BODY static __attribute__((noinline))
+#endif
+
 #endif

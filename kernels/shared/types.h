@@ -27,6 +27,8 @@ SUN_NAMESPACE_END
 
 // A helper of the kernels; never an entry point.
 #define SUN_FN static inline
+// One that takes the address of what has to stay in registers: called, it would keep that in memory (a third of a traversal's speed).
+#define SUN_INLINE static inline __attribute__((always_inline))
 
 #define SUN_NONE 0xffffffffu  // "no index", in every table
 

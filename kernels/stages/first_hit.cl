@@ -15,19 +15,16 @@ SUN_FN void layer_add(const FilmView *film, uint layer, mask active, const Path 
   if (layer != SUN_NONE) film_add_lanes(film, active, (uint_n)(layer), path->pixel, pixel_hash, path->sample, (uint_n)(SUN_FILM_KEY_LAYER(layer)), value);
 }
 
-SUN_KERNEL void first_hit(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex *vertices, const SUN_GLOBAL VertexExtra *extras,
-                          const SUN_GLOBAL Triangle *triangles, const SUN_GLOBAL Instance *instances, const SUN_GLOBAL uint *records,
-                          const SUN_GLOBAL uint *page0, const SUN_GLOBAL uint *page1, const SUN_GLOBAL uint *page2, const SUN_GLOBAL uint *page3,
-                          SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, const SUN_GLOBAL uint *rays,
-                          FilmCounts counts, FilmWords film_words) {
-  uint first = (uint)get_global_id(0) * LANES, length = counts[SUN_COUNT_LIVE];
+SUN_BODY void first_hit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status,
+                               const SUN_GLOBAL Hit *hits, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words, uint first) {
+  uint length = counts[SUN_COUNT_LIVE];
   if (first >= length) return;
   QueueLanes lanes = queue_lanes(rays, first, length);
   uint_n word = gather_uint(status, lanes.slot);
   uint_n done = (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_FIRST_HIT);
   mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0)) & ((word & done) == (uint_n)(0));
   if (!ANY(active)) return;
-  Scene opened = open_scene(frame, vertices, extras, triangles, instances, records, page0, page1, page2, page3);
+  Scene opened = open_scene(frame, SCENE_ARGUMENTS);
   const Scene *scene = &opened;
   FilmView film = open_film(frame, film_words, counts);
   Paths paths;
@@ -63,4 +60,9 @@ SUN_KERNEL void first_hit(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex
   layer_add(&film, frame->layer_object, leading, &path, key.pixel_hash, splat3(real_of_uint(hit.instance + (uint_n)(1))));
   layer_add(&film, frame->layer_material, leading, &path, key.pixel_hash, splat3(real_of_uint(surface.material + (uint_n)(1))));
   store_uint(status, lanes.slot, present, word | (uint_n)(SUN_STATUS_FIRST_HIT));
+}
+
+SUN_KERNEL void first_hit(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status,
+                          const SUN_GLOBAL Hit *hits, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
+  first_hit_bundle(frame, SCENE_ARGUMENTS, path_words, status, hits, rays, counts, film_words, (uint)get_global_id(0) * LANES);
 }

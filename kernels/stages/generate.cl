@@ -9,9 +9,9 @@
 #include "path/queue.h"
 #include "scene/camera.h"
 
-SUN_KERNEL void generate(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uint *records, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status,
-                         const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts) {
-  uint first = (uint)get_global_id(0) * LANES, refill = counts[SUN_COUNT_REFILL];
+SUN_BODY void generate_bundle(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uint *records, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status,
+                              const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts, uint first) {
+  uint refill = counts[SUN_COUNT_REFILL];
   if (first >= refill) return;
   const SUN_GLOBAL float *tables = (const SUN_GLOBAL float *)(records + frame->at_tables);
   Paths paths;
@@ -51,4 +51,9 @@ SUN_KERNEL void generate(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uint *r
   path.vertex = (uint_n)(0);
   path_store(&paths, lanes.slot, inside, &path);
   store_uint(status, lanes.slot, lanes.active, inside ? (uint_n)(SUN_STATUS_ALIVE) : (uint_n)(0));
+}
+
+SUN_KERNEL void generate(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uint *records, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status,
+                         const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts) {
+  generate_bundle(frame, records, path_words, status, rays, counts, (uint)get_global_id(0) * LANES);
 }

@@ -8,15 +8,14 @@
 #include "scene/traverse.h"
 #include "shared/frame.h"
 
-SUN_TRACE_KERNEL void intersect(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uchar *nodes, const SUN_GLOBAL uchar *leaves,
-                                const SUN_GLOBAL uint *instance_list, const SUN_GLOBAL uint *roots, const SUN_GLOBAL Instance *instances, uint top_root,
-                                const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *status, SUN_GLOBAL Hit *hits, const SUN_GLOBAL uint *rays,
-                                const SUN_GLOBAL uint *counts) {
-  uint position = (uint)get_global_id(0);
+SUN_BODY void intersect_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, const SUN_GLOBAL Instance *instances, const SUN_GLOBAL uint *path_words,
+                            const SUN_GLOBAL uint *status, SUN_GLOBAL Hit *hits, const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts,
+                            uint position) {
   if (position >= counts[SUN_COUNT_LIVE]) return;
   uint slot = rays[position];
+  if (position + SUN_AHEAD < counts[SUN_COUNT_LIVE]) SUN_SOON(path_words + (size_t)rays[position + SUN_AHEAD] * SUN_PATH_WORDS);
   if (!(status[slot] & SUN_STATUS_ALIVE)) return;
-  TraceScene scene = make_trace_scene(nodes, leaves, instance_list, roots, instances, top_root, frame->instance_count);
+  TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count);
   Paths paths;
   paths.words = (SUN_GLOBAL uint *)path_words;
   paths.pool = frame->pool;
@@ -30,4 +29,10 @@ SUN_TRACE_KERNEL void intersect(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL 
   ray.passed_instance = path_words[path_word(&paths, slot, SUN_PATH_passed_instance)];
   ray.passed_primitive = path_words[path_word(&paths, slot, SUN_PATH_passed_primitive)];
   hits[slot] = closest_hit(&scene, ray, SUN_WANT_ALL);
+}
+
+SUN_TRACE_KERNEL void intersect(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, const SUN_GLOBAL Instance *instances,
+                                const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *status, SUN_GLOBAL Hit *hits,
+                                const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts) {
+  intersect_ray(frame, TREE_ARGUMENTS, instances, path_words, status, hits, rays, counts, (uint)get_global_id(0));
 }

@@ -8,16 +8,12 @@
 #include "scene/surface.h"
 #include "scene/traverse.h"
 
-SUN_TRACE_KERNEL void occlude(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uchar *nodes, const SUN_GLOBAL uchar *leaves,
-                              const SUN_GLOBAL uint *instance_list, const SUN_GLOBAL uint *roots, uint top_root, const SUN_GLOBAL Vertex *vertices,
-                              const SUN_GLOBAL VertexExtra *extras, const SUN_GLOBAL Triangle *triangles, const SUN_GLOBAL Instance *instances,
-                              const SUN_GLOBAL uint *records, const SUN_GLOBAL uint *page0, const SUN_GLOBAL uint *page1, const SUN_GLOBAL uint *page2,
-                              const SUN_GLOBAL uint *page3, const SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *queue,
-                              FilmCounts counts, FilmWords film_words) {
-  uint position = (uint)get_global_id(0);
+SUN_BODY void occlude_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_PARAMETERS, const SUN_GLOBAL ShadowRay *shadow_rays,
+                          const SUN_GLOBAL uint *queue, FilmCounts counts, FilmWords film_words, uint position) {
   if (position >= counts[SUN_COUNT_SHADOW]) return;
   const SUN_GLOBAL ShadowRay *shadow = shadow_rays + queue[position];
-  TraceScene tree = make_trace_scene(nodes, leaves, instance_list, roots, instances, top_root, frame->instance_count);
+  if (position + SUN_AHEAD < counts[SUN_COUNT_SHADOW]) SUN_SOON(shadow_rays + queue[position + SUN_AHEAD]);
+  TraceScene tree = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count);
   Ray ray;
   for (int axis = 0; axis < 3; axis++) {
     ray.origin[axis] = shadow->origin[axis];
@@ -29,7 +25,7 @@ SUN_TRACE_KERNEL void occlude(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uc
   if (any_hit(&tree, ray, SUN_WANT_OPAQUE)) return;
   vec3 worth = make_vec3(shadow->contribution[0], shadow->contribution[1], shadow->contribution[2]);
 #if SUN_PASSABLE
-  Scene scene = open_scene(frame, vertices, extras, triangles, instances, records, page0, page1, page2, page3);
+  Scene scene = open_scene(frame, SCENE_ARGUMENTS);
   vec3 wo = normalize3(make_vec3(-ray.direction[0], -ray.direction[1], -ray.direction[2]));
   for (;;) {
     Hit hit = closest_hit(&tree, ray, SUN_WANT_PASSABLE);
@@ -51,4 +47,9 @@ SUN_TRACE_KERNEL void occlude(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uc
 #endif
   FilmView film = open_film(frame, film_words, counts);
   film_contribute(frame, &film, shadow->pixel, shadow->sample, SUN_FILM_KEY_DIRECT(shadow->vertex), shadow->depth, worth.x, worth.y, worth.z);
+}
+
+SUN_TRACE_KERNEL void occlude(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_PARAMETERS, const SUN_GLOBAL ShadowRay *shadow_rays,
+                              const SUN_GLOBAL uint *queue, FilmCounts counts, FilmWords film_words) {
+  occlude_ray(frame, TREE_ARGUMENTS, SCENE_ARGUMENTS, shadow_rays, queue, counts, film_words, (uint)get_global_id(0));
 }

@@ -12,9 +12,9 @@
 
 #define SUN_ROULETTE_LEAST 0.05f  // chance to survive, at the dimmest
 
-SUN_KERNEL void roulette(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *rays,
-                         const SUN_GLOBAL uint *counts) {
-  uint first = (uint)get_global_id(0) * LANES, length = counts[SUN_COUNT_LIVE];
+SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *rays,
+                              const SUN_GLOBAL uint *counts, uint first) {
+  uint length = counts[SUN_COUNT_LIVE];
   if (first >= length) return;
   QueueLanes lanes = queue_lanes(rays, first, length);
   uint_n word = gather_uint(status, lanes.slot);
@@ -43,4 +43,9 @@ SUN_KERNEL void roulette(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_wo
   uint_n ended = (word & (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_SHADOW | SUN_STATUS_FIRST_HIT)) |
                  (uint_n)(SUN_STATUS_ENDED | (SUN_ENDED_ABSORBED << SUN_STATUS_ENDED_SHIFT));
   store_uint(status, lanes.slot, dies, ended);
+}
+
+SUN_KERNEL void roulette(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *rays,
+                         const SUN_GLOBAL uint *counts) {
+  roulette_bundle(frame, path_words, status, rays, counts, (uint)get_global_id(0) * LANES);
 }

@@ -13,38 +13,21 @@
 #include "transport/scatter.h"
 
 SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, const DirectSample *direct, vec3 worth, const Path *path, uint_n depth) {
-  uint slot[LANES], word[14][LANES];
-  int on[LANES];
-  LANES_STORE(slots, slot);
-  LANES_STORE(direct->valid, on);
-  LANES_STORE(bits_of_real(direct->origin.x), word[0]);
-  LANES_STORE(bits_of_real(direct->origin.y), word[1]);
-  LANES_STORE(bits_of_real(direct->origin.z), word[2]);
-  LANES_STORE(bits_of_real(direct->t_max), word[3]);
-  LANES_STORE(bits_of_real(direct->direction.x), word[4]);
-  LANES_STORE(bits_of_real(direct->direction.y), word[5]);
-  LANES_STORE(bits_of_real(direct->direction.z), word[6]);
-  LANES_STORE(path->pixel, word[7]);
-  LANES_STORE(bits_of_real(worth.x), word[8]);
-  LANES_STORE(bits_of_real(worth.y), word[9]);
-  LANES_STORE(bits_of_real(worth.z), word[10]);
-  LANES_STORE(path->sample, word[11]);
-  LANES_STORE(depth, word[12]);
-  LANES_STORE(path->vertex, word[13]);
-  SUN_GLOBAL uint *words = (SUN_GLOBAL uint *)shadow_rays;
-  for (int lane = 0; lane < LANES; lane++)
-    if (on[lane])
-      for (uint i = 0; i < 14; i++) words[slot[lane] * 16 + i] = word[i][lane];
+  // In the order of shared/queues.h.
+  uint_n words[16] = {bits_of_real(direct->origin.x),    bits_of_real(direct->origin.y),    bits_of_real(direct->origin.z),
+                      bits_of_real(direct->t_max),       bits_of_real(direct->direction.x), bits_of_real(direct->direction.y),
+                      bits_of_real(direct->direction.z), path->pixel,                       bits_of_real(worth.x),
+                      bits_of_real(worth.y),             bits_of_real(worth.z),             path->sample,
+                      depth,                             path->vertex,                      (uint_n)(0),
+                      (uint_n)(0)};
+  store_records((SUN_GLOBAL uint *)shadow_rays, slots, direct->valid, words);
 }
 
-SUN_KERNEL void shade(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex *vertices, const SUN_GLOBAL VertexExtra *extras,
-                      const SUN_GLOBAL Triangle *triangles, const SUN_GLOBAL Instance *instances, const SUN_GLOBAL uint *records,
-                      const SUN_GLOBAL uint *page0, const SUN_GLOBAL uint *page1, const SUN_GLOBAL uint *page2, const SUN_GLOBAL uint *page3,
-                      SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays,
-                      const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
-  uint first = (uint)get_global_id(0) * LANES, length = counts[SUN_COUNT_LIVE];
+SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
+                           SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words, uint first) {
+  uint length = counts[SUN_COUNT_LIVE];
   if (first >= length) return;
-  Scene opened = open_scene(frame, vertices, extras, triangles, instances, records, page0, page1, page2, page3);
+  Scene opened = open_scene(frame, SCENE_ARGUMENTS);
   const Scene *scene = &opened;
   FilmView film = open_film(frame, film_words, counts);
   Paths paths;
@@ -144,4 +127,9 @@ SUN_KERNEL void shade(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL Vertex *ve
   path.vertex = path.vertex + (uint_n)(1);
   path_store(&paths, lanes.slot, active, &path);
   store_uint(status, lanes.slot, active, next_word);
+}
+
+SUN_KERNEL void shade(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
+                      SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
+  shade_bundle(frame, SCENE_ARGUMENTS, path_words, status, hits, shadow_rays, rays, counts, film_words, (uint)get_global_id(0) * LANES);
 }

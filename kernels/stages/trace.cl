@@ -21,20 +21,26 @@ static Ray load_ray(__global const float8 *rays, __global const uint2 *passed, u
   return ray;
 }
 
-SUN_TRACE_KERNEL void trace_closest(__global const float8 *rays, __global const uint2 *passed, __global Hit *hits, uint count, uint want,
-                                    __global const uchar *nodes, __global const uchar *leaves, __global const uint *instance_list,
-                                    __global const uint *roots, __global const Instance *instances, uint top_root, uint instance_count) {
-  const uint i = (uint)get_global_id(0);
-  if (i >= count) return;
-  const TraceScene scene = make_trace_scene(nodes, leaves, instance_list, roots, instances, top_root, instance_count);
+SUN_BODY void trace_closest_ray(__global const float8 *rays, __global const uint2 *passed, __global Hit *hits, uint want, TREE_PARAMETERS,
+                                __global const Instance *instances, uint instance_count, uint i) {
+  const TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, instance_count);
   hits[i] = closest_hit(&scene, load_ray(rays, passed, i), want);
 }
 
-SUN_TRACE_KERNEL void trace_any(__global const float8 *rays, __global const uint2 *passed, __global uint *blocked, uint count, uint want,
-                                __global const uchar *nodes, __global const uchar *leaves, __global const uint *instance_list,
-                                __global const uint *roots, __global const Instance *instances, uint top_root, uint instance_count) {
-  const uint i = (uint)get_global_id(0);
-  if (i >= count) return;
-  const TraceScene scene = make_trace_scene(nodes, leaves, instance_list, roots, instances, top_root, instance_count);
+SUN_BODY void trace_any_ray(__global const float8 *rays, __global const uint2 *passed, __global uint *blocked, uint want, TREE_PARAMETERS,
+                            __global const Instance *instances, uint instance_count, uint i) {
+  const TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, instance_count);
   blocked[i] = any_hit(&scene, load_ray(rays, passed, i), want) ? 1u : 0u;
+}
+
+SUN_TRACE_KERNEL void trace_closest(__global const float8 *rays, __global const uint2 *passed, __global Hit *hits, uint count, uint want,
+                                    TREE_PARAMETERS, __global const Instance *instances, uint instance_count) {
+  const uint i = (uint)get_global_id(0);
+  if (i < count) trace_closest_ray(rays, passed, hits, want, TREE_ARGUMENTS, instances, instance_count, i);
+}
+
+SUN_TRACE_KERNEL void trace_any(__global const float8 *rays, __global const uint2 *passed, __global uint *blocked, uint count, uint want,
+                                TREE_PARAMETERS, __global const Instance *instances, uint instance_count) {
+  const uint i = (uint)get_global_id(0);
+  if (i < count) trace_any_ray(rays, passed, blocked, want, TREE_ARGUMENTS, instances, instance_count, i);
 }

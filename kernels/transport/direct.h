@@ -67,13 +67,9 @@ SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lo
   const SUN_GLOBAL Frame *frame = scene->frame;
   vec3 black = splat3((real)(0.0f));
   EmitterChoice choice = choose_emitter(scene->emitters, frame->emitter_count, u_choice);
-  uint_n kind, a, b;
-  GATHER_UINT(kind, scene->emitters, choice.index, kind);
-  GATHER_UINT(a, scene->emitters, choice.index, a);
-  GATHER_UINT(b, scene->emitters, choice.index, b);
-  mask is_triangle = active & (kind == (uint_n)(SUN_EMITTER_TRIANGLE));
-  mask is_light = active & (kind == (uint_n)(SUN_EMITTER_LIGHT));
-  mask is_environment = active & (kind == (uint_n)(SUN_EMITTER_ENVIRONMENT));
+  mask is_triangle = active & (choice.kind == (uint_n)(SUN_EMITTER_TRIANGLE));
+  mask is_light = active & (choice.kind == (uint_n)(SUN_EMITTER_LIGHT));
+  mask is_environment = active & (choice.kind == (uint_n)(SUN_EMITTER_ENVIRONMENT));
 
   vec3 emission = black;
   vec3 target = s->position;          // of triangles and of lights that have a place
@@ -82,14 +78,14 @@ SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lo
   mask has_target = is_triangle;
 
   if (ANY(is_triangle)) {
-    EmitterPoint point = sample_triangle(scene, is_triangle ? a : (uint_n)(0), is_triangle ? b : (uint_n)(0), u_point, s->position, is_triangle);
+    EmitterPoint point = sample_triangle(scene, is_triangle ? choice.a : (uint_n)(0), is_triangle ? choice.b : (uint_n)(0), u_point, s->position, is_triangle);
     emission = select3(is_triangle, point.emission, emission);
     target = select3(is_triangle, point.target, target);
     pdf = is_triangle ? point.pdf_solid_angle : pdf;
     direction = select3(is_triangle, normalize3(sub3(point.target, s->position)), direction);
   }
   if (ANY(is_light)) {
-    LightSample light = light_sample(scene->lights, is_light ? a : (uint_n)(0), s->position);
+    LightSample light = light_sample(scene->lights, is_light ? choice.a : (uint_n)(0), s->position);
     emission = select3(is_light, light.radiance, emission);
     mask placed = is_light & (light.distance < SUN_FAR);
     target = select3(placed, add3(s->position, scale3(light.direction, placed ? light.distance : (real)(0.0f))), target);

@@ -64,7 +64,7 @@ void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell
 
 TraceScene tree_scene(const FlatScene &scene, const Tree &tree) {
   return make_trace_scene(reinterpret_cast<const uchar *>(tree.nodes.data()), reinterpret_cast<const uchar *>(tree.leaves.data()),
-                          tree.instance_list.data(), tree.roots.data(), scene.instances.data(), tree.top_root, uint(scene.instances.size()));
+                          tree.instance_list.data(), tree.roots.data(), tree.top_root, scene.instances.data(), uint(scene.instances.size()));
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ std::vector<T> Tracer::run(const char *name, std::span<const TracedRay> rays, ui
   const Buffer<std::array<uint, 2>> passed_buffer(device_, std::span<const std::array<uint, 2>>(passed), "passed");
   const Buffer<T> result(device_, rays.size(), "result");
   Kernel kernel(program_, name);
-  kernel.run(rays.size(), ray_buffer, passed_buffer, result, uint(rays.size()), want, nodes_, leaves_, list_, roots_, instances_, top_root_,
+  kernel.run(rays.size(), ray_buffer, passed_buffer, result, uint(rays.size()), want, nodes_, leaves_, list_, roots_, top_root_, instances_,
              instance_count_);
   return result.download();
 }
