@@ -8,6 +8,32 @@
 #include "scene/traverse.h"
 #include "shared/frame.h"
 
+// The ray of one path. Words that stand together are loaded together: piecemeal, compilers keep them in memory and reload them in
+// pairs, which waits for the stores.
+SUN_INLINE Ray path_ray(const Paths *paths, uint slot) {
+  uint word[12];
+#if SUN_COLUMNS
+  for (uint field = 0; field < 12; field++) word[field] = paths->words[path_word(paths, slot, field)];
+#else
+  const SUN_GLOBAL uint *record = paths->words + path_word(paths, slot, 0);
+  vstore4(vload4(0, record), 0, word);
+  vstore4(vload4(1, record), 1, word);
+  vstore4(vload4(2, record), 2, word);
+#endif
+  Ray ray;
+  ray.origin[0] = as_float(word[SUN_PATH_origin_x]);
+  ray.origin[1] = as_float(word[SUN_PATH_origin_y]);
+  ray.origin[2] = as_float(word[SUN_PATH_origin_z]);
+  ray.direction[0] = as_float(word[SUN_PATH_direction_x]);
+  ray.direction[1] = as_float(word[SUN_PATH_direction_y]);
+  ray.direction[2] = as_float(word[SUN_PATH_direction_z]);
+  ray.t_max = SUN_INFINITY;
+  ray.passed_t = as_float(word[SUN_PATH_passed_t]);
+  ray.passed_instance = word[SUN_PATH_passed_instance];
+  ray.passed_primitive = word[SUN_PATH_passed_primitive];
+  return ray;
+}
+
 SUN_BODY void intersect_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, const SUN_GLOBAL Instance *instances, const SUN_GLOBAL uint *path_words,
                             const SUN_GLOBAL uint *status, SUN_GLOBAL Hit *hits, const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts,
                             uint position) {
@@ -19,15 +45,7 @@ SUN_BODY void intersect_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, cons
   Paths paths;
   paths.words = (SUN_GLOBAL uint *)path_words;
   paths.pool = frame->pool;
-  Ray ray;
-  for (uint axis = 0; axis < 3; axis++) {
-    ray.origin[axis] = as_float(path_words[path_word(&paths, slot, SUN_PATH_origin_x + axis)]);
-    ray.direction[axis] = as_float(path_words[path_word(&paths, slot, SUN_PATH_direction_x + axis)]);
-  }
-  ray.t_max = SUN_INFINITY;
-  ray.passed_t = as_float(path_words[path_word(&paths, slot, SUN_PATH_passed_t)]);
-  ray.passed_instance = path_words[path_word(&paths, slot, SUN_PATH_passed_instance)];
-  ray.passed_primitive = path_words[path_word(&paths, slot, SUN_PATH_passed_primitive)];
+  Ray ray = path_ray(&paths, slot);
   hits[slot] = closest_hit(&scene, ray, SUN_WANT_ALL);
 }
 

@@ -14,12 +14,15 @@ SUN_BODY void occlude_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_
   const SUN_GLOBAL ShadowRay *shadow = shadow_rays + queue[position];
   if (position + SUN_AHEAD < counts[SUN_COUNT_SHADOW]) SUN_SOON(shadow_rays + queue[position + SUN_AHEAD]);
   TraceScene tree = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count);
+  const float4 from = vload4(0, shadow->origin), along = vload4(0, shadow->direction);  // with the word behind: see intersect.cl
   Ray ray;
-  for (int axis = 0; axis < 3; axis++) {
-    ray.origin[axis] = shadow->origin[axis];
-    ray.direction[axis] = shadow->direction[axis];
-  }
-  ray.t_max = shadow->t_max;
+  ray.origin[0] = from.x;
+  ray.origin[1] = from.y;
+  ray.origin[2] = from.z;
+  ray.direction[0] = along.x;
+  ray.direction[1] = along.y;
+  ray.direction[2] = along.z;
+  ray.t_max = from.w;
   ray.passed_t = 0.0f;
   ray.passed_instance = ray.passed_primitive = SUN_NONE;
   if (any_hit(&tree, ray, SUN_WANT_OPAQUE)) return;
