@@ -86,8 +86,12 @@ void traversal(Options &o, Notices &notices) {
 }
 
 Session bench_session(Options &o, const RenderSettings &settings, Notices &notices) {
-  if (!o.render.scene.empty()) return open_session(o.render, settings, notices);
   Session session;
+  if (!o.render.scene.empty()) {
+    session = open_session(o.render, settings, notices);
+    compile_session(session, o.render, settings);
+    return session;
+  }
   const DeviceInfo info = choose_device(list_devices(notices), o.render.device);
   session.device = Device(info, {o.render.threads, true, o.render.work_group});
   session.variant = device_variant(info);
@@ -96,8 +100,7 @@ Session bench_session(Options &o, const RenderSettings &settings, Notices &notic
   session.loaded = bench_scene(o, settings, info, notices);
   session.loaded.flat.tree = load_content().build_tree(session.loaded.flat, session.variant.layout, {});
   session.variant = scene_variant(session.variant, session.loaded.flat);
-  session.programs = std::make_unique<Programs>(session.device, session.variant);
-  session.renderer = std::make_unique<Renderer>(session.device, *session.programs, session.loaded.flat, session.loaded.camera, settings, Tuning{o.render.pool, session.variant.lanes});
+  compile_session(session, o.render, settings);
   return session;
 }
 
@@ -125,6 +128,7 @@ void scene(Options &o, Notices &notices) {
   if (o.render.scene.empty()) throw UsageError("sunstone bench scene", "takes a scene");
   const RenderSettings settings = render_settings(o.render);
   Session session = open_session(o.render, settings, notices);
+  compile_session(session, o.render, settings);
   fmt::print("{}\n{}\n", session.device.info().description(), session.loaded.line);
   const auto renderer = [&] {
     return std::make_unique<Renderer>(session.device, *session.programs, session.loaded.flat, session.loaded.camera, settings, Tuning{o.render.pool, session.variant.lanes});

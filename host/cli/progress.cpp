@@ -44,6 +44,7 @@ void Progress::bar(double fraction, const std::string &text) {
 void Progress::end_bar() {
   if (drawn_) std::printf("\n");
   drawn_ = false;
+  last_fraction_ = 0;
 }
 
 double Progress::seconds() {

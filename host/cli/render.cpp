@@ -37,6 +37,7 @@ class Render {
   void write_outputs();
   void write_checkpoint();
   Film whole_film() const;
+  void compile();
   bool go_on(const RenderProgress &p);
 
   RenderOptions &o_;
@@ -153,6 +154,16 @@ void Render::render_range(SampleRange range) {
   }
 }
 
+void Render::compile() {
+  constexpr double noticeable = 0.5;  // seconds: kernels that were compiled before are there sooner, and then there is nothing to say
+  const double begun = now();
+  compile_session(session_, o_, settings_, [&](double fraction, const std::string &what) {
+    if (now() - begun > noticeable) progress_.bar(fraction, "compiling kernels, the first time on this device: " + what);
+  });
+  if (now() - begun > noticeable) progress_.bar(1, "kernels compiled in " + show_seconds(now() - begun));
+  progress_.end_bar();
+}
+
 void Render::run() {
   settings_ = render_settings(o_);
   all_ = parse_samples(o_);
@@ -161,6 +172,7 @@ void Render::run() {
   session_ = open_session(o_, settings_, notices_);
   progress_.line(session_.device.info().description());
   progress_.line(session_.loaded.line);
+  compile();
   const SelfTestResult self_test = cached_self_test(session_.device);
   reproducible_ = self_test.reproducible ? "yes" : "no";
   if (!self_test.reproducible)

@@ -113,14 +113,25 @@ Session open_session(const RenderOptions &o, const RenderSettings &settings, Not
   session.device = Device(info, {o.threads, true, o.work_group});
   session.loaded = loading.get();
   session.variant = scene_variant(session.variant, session.loaded.flat);
+  return session;
+}
+
+void compile_session(Session &session, const RenderOptions &o, const RenderSettings &settings, const CompileProgress &progress) {
+  const auto half = [&](double first) -> CompileProgress {
+    return [&progress, first](double fraction, const std::string &what) {
+      if (progress) progress(first + 0.5 * fraction, what);
+    };
+  };
   double begun = now();
-  session.programs = std::make_unique<Programs>(session.device, session.variant);
+  session.programs = std::make_unique<Programs>(session.device, session.variant, half(0));
   session.compile_seconds = now() - begun;
   begun = now();
   session.renderer = std::make_unique<Renderer>(session.device, *session.programs, session.loaded.flat, session.loaded.camera, settings, Tuning{o.pool, session.variant.lanes});
   session.device.finish();
   session.upload_seconds = now() - begun;
-  return session;
+  begun = now();
+  session.renderer->warm_up(half(0.5));
+  session.compile_seconds += now() - begun;
 }
 
 }  // namespace sunstone

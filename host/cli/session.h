@@ -37,4 +37,7 @@ struct Session {
 // Opens the device and loads the scene at once, in two threads.
 Session open_session(const RenderOptions &options, const RenderSettings &settings, Notices &notices);
 
+// Then the kernels for it, and its renderer. `progress` is asked before each of them; the second half is their first launches.
+void compile_session(Session &session, const RenderOptions &options, const RenderSettings &settings, const CompileProgress &progress = {});
+
 }  // namespace sunstone

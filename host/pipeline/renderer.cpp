@@ -246,6 +246,20 @@ SampleRange Renderer::render(SampleRange wanted, const std::function<bool(const 
   return done;
 }
 
+void Renderer::warm_up(const CompileProgress &progress) {
+  State &s = *state_;
+  s.place_tile(s.tiles[0]);
+  s.device_frame.upload(std::span(&s.frame, 1));
+  s.pool->counts.fill_zero();
+  StageRunner runner(s.programs, s.scene, *s.pool, s.device_frame, s.device_film);
+  for (std::size_t i = 0; i < s.walk.size(); i++) {
+    if (progress) progress(static_cast<double>(i) / static_cast<double>(s.walk.size()), "first launches");
+    runner.run(s.walk[i]);
+    s.device.finish();
+  }
+  s.device.take_times();
+}
+
 struct StageProbe::State {
   Renderer::State &render;
   std::unique_ptr<StageRunner> runner;

@@ -57,6 +57,9 @@ class Renderer {
   Renderer(const Device &device, const Programs &programs, const FlatScene &scene, const kernel::Camera &camera, const RenderSettings &settings, const Tuning &tuning);
   ~Renderer();
 
+  // Launches every stage once on an empty queue. Drivers that compile at a first launch (PoCL) do it here and not within the first sample.
+  void warm_up(const CompileProgress &progress);
+
   // Renders samples [first, last) of every pixel and adds them to the film. `progress` is asked between launches; where it answers false the call ends
   // after the samples that have begun, all pixels alike. Returns what was done: [first, done).
   SampleRange render(SampleRange wanted, const std::function<bool(const RenderProgress &)> &progress);

@@ -21,6 +21,12 @@ Switches tracing(const Variant &v) {
   return switches;
 }
 
+Program build_stage(const Device &device, const std::string &name, const Switches &switches, int number, const CompileProgress &progress) {
+  constexpr double programs = 7;
+  if (progress) progress(number / programs, name);
+  return {device, "stages/" + name + ".cl", switches};
+}
+
 }  // namespace
 
 Variant device_variant(const DeviceInfo &info) {
@@ -40,15 +46,15 @@ Layout device_layout(const DeviceInfo &info) {
   return info.native_float_width >= 16 ? Layout::wide16 : Layout::wide8;
 }
 
-Programs::Programs(const Device &device, const Variant &v)
+Programs::Programs(const Device &device, const Variant &v, const CompileProgress &progress)
     : variant(v),
-      generate(device, "stages/generate.cl", shading(v)),
-      intersect(device, "stages/intersect.cl", tracing(v)),
-      first_hit(device, "stages/first_hit.cl", shading(v)),
-      shade(device, "stages/shade.cl", shading(v)),
-      occlude(device, "stages/occlude.cl", tracing(v)),
-      roulette(device, "stages/roulette.cl", shading(v)),
-      compact(device, "stages/compact.cl", {{"SUN_CHUNK", static_cast<int>(v.chunk)}}) {}
+      generate(build_stage(device, "generate", shading(v), 0, progress)),
+      intersect(build_stage(device, "intersect", tracing(v), 1, progress)),
+      first_hit(build_stage(device, "first_hit", shading(v), 2, progress)),
+      shade(build_stage(device, "shade", shading(v), 3, progress)),
+      occlude(build_stage(device, "occlude", tracing(v), 4, progress)),
+      roulette(build_stage(device, "roulette", shading(v), 5, progress)),
+      compact(build_stage(device, "compact", {{"SUN_CHUNK", static_cast<int>(v.chunk)}}, 6, progress)) {}
 
 Pool::Pool(const Device &device, unsigned slots_, unsigned chunk)
     : slots(slots_),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stages on one device: their programs, and the kernels bound to a scene, a pool and a film.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "device/kernel.h"
 #include "flatten/flatten.h"
@@ -28,9 +30,12 @@ Variant device_variant(const DeviceInfo &info);
 // The layout of the BVH that suits a device.
 Layout device_layout(const DeviceInfo &info);
 
+// Says how much of a compilation is done, and what comes next.
+using CompileProgress = std::function<void(double fraction, const std::string &what)>;
+
 // Compiled programs, one a stage.
 struct Programs {
-  Programs(const Device &device, const Variant &variant);
+  Programs(const Device &device, const Variant &variant, const CompileProgress &progress = {});
   Variant variant;
   Program generate, intersect, first_hit, shade, occlude, roulette, compact;
 };
