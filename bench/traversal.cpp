@@ -33,6 +33,7 @@ class Tracer {
         leaves_(device, std::span<const std::byte>(tree.leaves), "leaves"),
         list_(device, std::span<const uint>(tree.instance_list), "instance list"),
         roots_(device, std::span<const uint>(tree.roots), "roots"),
+        fragments_(device, std::span<const kernel::Fragment>(scene.fragments), "fragments"),
         instances_(device, std::span<const kernel::Instance>(scene.instances), "instances"),
         top_root_(tree.top_root),
         instance_count_(uint(scene.instances.size())) {}
@@ -42,9 +43,9 @@ class Tracer {
     const uint count = uint(rays.size()), want = 0;
     const auto start = std::chrono::steady_clock::now();
     if (any)
-      any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, top_root_, instances_, instance_count_);
+      any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_, instance_count_);
     else
-      closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, top_root_, instances_, instance_count_);
+      closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_, instance_count_);
     device_.finish();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
@@ -57,6 +58,7 @@ class Tracer {
   Kernel closest_, any_;
   Buffer<std::byte> nodes_, leaves_;
   Buffer<uint> list_, roots_;
+  Buffer<kernel::Fragment> fragments_;
   Buffer<kernel::Instance> instances_;
   uint top_root_, instance_count_;
 };

@@ -44,6 +44,7 @@ LoadedScene bench_scene(const Options &o, const RenderSettings &settings, const 
   if (!o.render.scene.empty()) return load_scene(o.render, settings, device_layout(device), device, notices);
   LoadedScene loaded;
   loaded.flat = make_big_scene();
+  load_content().split_long_triangles(loaded.flat, {});
   loaded.camera = corner_camera(loaded.flat.bounds);
   loaded.line = fmt::format("made room: {} triangles", loaded.flat.triangles.size());
   return loaded;

@@ -26,6 +26,7 @@ extern "C" __attribute__((visibility("default"))) const sunstone::Content *sunst
       .add_defaults = sunstone::add_defaults,
       .estimate_memory = sunstone::estimate_memory,
       .flatten = sunstone::flatten,
+      .split_long_triangles = sunstone::split_long_triangles,
       .build_tree = sunstone::build_tree,
       .flatten_camera = sunstone::flatten_camera,
       .embree = embree,

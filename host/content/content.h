@@ -10,6 +10,7 @@
 #include "flatten/bvh.h"
 #include "flatten/camera.h"
 #include "flatten/flatten.h"
+#include "flatten/fragments.h"
 #include "image/image.h"
 #include "import/import.h"
 #include "output/output.h"
@@ -33,6 +34,7 @@ struct Content {
   // flatten/.
   MemoryEstimate (*estimate_memory)(const Scene &scene, Layout layout) = nullptr;
   FlatScene (*flatten)(const Scene &scene, const FlattenOptions &options, Notices &notices) = nullptr;
+  void (*split_long_triangles)(FlatScene &scene, const SplitOptions &options) = nullptr;
   Tree (*build_tree)(const FlatScene &scene, Layout layout, const std::function<void(const char *what, double fraction)> &progress) = nullptr;
   kernel::Camera (*flatten_camera)(const Camera &camera, int width, int height) = nullptr;
   // bench/embree_reference.h: embree-high, embree-robust, embree-medium or embree-16, over this geometry.

@@ -225,18 +225,31 @@ TreePart build_part(RTCDevice embree, std::vector<RTCBuildPrimitive> &boxes, uns
   return part;
 }
 
-std::vector<RTCBuildPrimitive> triangle_boxes(const FlatScene &scene, const MeshRange &mesh) {
-  std::vector<RTCBuildPrimitive> boxes(mesh.triangle_count);
-  tbb::parallel_for(uint(0), mesh.triangle_count, [&](uint i) {
-    const kernel::Triangle &triangle = scene.triangles[mesh.first_triangle + i];
+// Of triangles that are whole, and of the fragments of those that are not.
+std::vector<RTCBuildPrimitive> item_boxes(const FlatScene &scene, const MeshRange &mesh) {
+  std::vector<RTCBuildPrimitive> boxes;
+  boxes.reserve(mesh.triangle_count + mesh.fragment_count);
+  const std::span fragments = std::span(scene.fragments).subspan(mesh.first_fragment, mesh.fragment_count);
+  std::size_t next = 0;
+  for (uint i = mesh.first_triangle; i < mesh.first_triangle + mesh.triangle_count; i++) {
+    if (next == fragments.size() || fragments[next].primitive != i) {
+      boxes.push_back({});
+      boxes.back().primID = i;
+    }
+    for (; next < fragments.size() && fragments[next].primitive == i; next++) {
+      const kernel::Fragment &f = fragments[next];
+      boxes.push_back({f.lower[0], f.lower[1], f.lower[2], 0, f.upper[0], f.upper[1], f.upper[2], SUN_ID_FRAGMENT | uint(mesh.first_fragment + next)});
+    }
+  }
+  tbb::parallel_for(std::size_t(0), boxes.size(), [&](std::size_t i) {
     RTCBuildPrimitive &box = boxes[i];
-    box.geomID = 0;
-    box.primID = mesh.first_triangle + i;
+    if (box.primID & SUN_ID_FRAGMENT) return;
+    const kernel::Triangle &triangle = scene.triangles[box.primID];
     for (int axis = 0; axis < 3; axis++) {
       const float a = scene.vertices[triangle.vertex[0]].position[axis], b = scene.vertices[triangle.vertex[1]].position[axis],
                   c = scene.vertices[triangle.vertex[2]].position[axis];
       if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c))
-        throw Error{"tree", "triangle " + std::to_string(mesh.first_triangle + i) + " has a corner that is not finite"};
+        throw Error{"tree", "triangle " + std::to_string(box.primID) + " has a corner that is not finite"};
       (&box.lower_x)[axis] = std::min({a, b, c});
       (&box.upper_x)[axis] = std::max({a, b, c});
     }
@@ -328,7 +341,7 @@ Tree build_tree(const FlatScene &scene, Layout layout, const std::function<void(
       parts[i] = empty_part(layout);
       return;
     }
-    std::vector<RTCBuildPrimitive> boxes = triangle_boxes(scene, mesh);
+    std::vector<RTCBuildPrimitive> boxes = item_boxes(scene, mesh);
     mesh_bounds[i] = bounds_of(boxes);
     parts[i] =
         build_part(embree.get(), boxes, leaf_triangles(layout), layout, [&](const BinaryTree &tree) { return lay_out_mesh(tree, layout, scene); });

@@ -5,7 +5,7 @@
 
 namespace sunstone {
 
-// Reads vertices, triangles, triangle_ids, meshes, instances and instance_mesh of `scene` and gives the tree of that layout: a tree a mesh, and one
+// Reads vertices, triangles, triangle_ids, fragments, meshes, instances and instance_mesh of `scene` and gives the tree of that layout: a tree a mesh, and one
 // over the instances where there is more than one. Deterministic results are not asked of it: no hit depends on the tree.
 Tree build_tree(const FlatScene &scene, Layout layout, const std::function<void(const char *what, double fraction)> &progress = {});
 

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "flatten/bvh.h"
 #include "flatten/emitters.h"
+#include "flatten/fragments.h"
 #include "flatten/geometry.h"
 #include "flatten/materials.h"
 #include "flatten/tables.h"
@@ -22,6 +23,7 @@ Hash hash_of(const FlatScene &flat) {
   add(flat.triangles);
   add(flat.triangle_ids);
   add(flat.triangle_emitter);
+  add(flat.fragments);
   for (const MeshRange &mesh : flat.meshes) {
     hasher.value(mesh.first_triangle);
     hasher.value(mesh.triangle_count);
@@ -76,10 +78,10 @@ MemoryEstimate estimate_memory(const Scene &scene, Layout layout) {
     }
   }
   estimate.geometry = vertices * (sizeof(kernel::Vertex) + (extras ? sizeof(kernel::VertexExtra) : 0)) +
-                      triangles * (sizeof(kernel::Triangle) + 2 * sizeof(kernel::uint)) +
+                      triangles * (sizeof(kernel::Triangle) + 2 * sizeof(kernel::uint)) + triangles / 2 * sizeof(kernel::Fragment) +
                       instances * (sizeof(kernel::Instance) + 2 * sizeof(kernel::uint));
   // Leaves are about half full; a node of W children leads to about W / 2 others.
-  const std::size_t items = triangles + instances;
+  const std::size_t items = triangles + triangles / 3 + instances;  // pieces of long triangles with them
   switch (layout) {
     case Layout::binary:
       estimate.tree = items * sizeof(kernel::LeafTriangle) + items * sizeof(kernel::BinaryNode);
@@ -132,6 +134,7 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options, Notices &no
   flatten_emitters(scene, options.max_page_bytes, flat, notices);
   report("emitters", 1);
 
+  split_long_triangles(flat);
   flat.scene_hash = hash_of(flat);
   flat.tree = build_tree(flat, options.layout, options.progress);
   return flat;

@@ -33,9 +33,11 @@ struct Tree {
   std::size_t node_count = 0, leaf_count = 0, depth = 0;
 };
 
-// The triangles of one mesh: a range of FlatScene::triangles.
+// The triangles of one mesh: a range of FlatScene::triangles. Those that are split have their pieces, in the order of the triangles, in a range of
+// FlatScene::fragments.
 struct MeshRange {
   kernel::uint first_triangle = 0, triangle_count = 0;
+  kernel::uint first_fragment = 0, fragment_count = 0;
 };
 
 struct FlatScene {
@@ -44,6 +46,7 @@ struct FlatScene {
   std::vector<kernel::Triangle> triangles;
   std::vector<kernel::uint> triangle_ids;           // primitive number and SUN_ID_ bits, by triangle
   std::vector<kernel::uint> triangle_emitter;       // number among its mesh's emissive triangles, or SUN_NONE
+  std::vector<kernel::Fragment> fragments;          // pieces of long triangles, and one at either end
   std::vector<MeshRange> meshes;
   std::vector<kernel::uint> instance_mesh;          // into meshes, by instance
   std::vector<kernel::Instance> instances;

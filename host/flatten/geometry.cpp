@@ -366,7 +366,7 @@ void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat
     if (!flat.meshes[part.range].triangle_count) flat.meshes[part.range].first_triangle = static_cast<uint>(triangles);
     triangles += part.triangles;
     dropped += part.welded->dropped + (part.welded->indices.size() / 3 - part.triangles);
-    if (triangles >= SUN_ID_PASSABLE) throw Error{"flatten", "more than 2^30 triangles", "use a simpler scene"};
+    if (triangles > SUN_ID_PRIMITIVE) throw Error{"flatten", "more than 2^29 triangles", "use a simpler scene"};
     flat.meshes[part.range].triangle_count += static_cast<uint>(part.triangles);
   }
   check_size("triangles", triangles, sizeof(kernel::Triangle), max_bytes);

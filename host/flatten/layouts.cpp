@@ -23,11 +23,18 @@ float area(const Node &node) {
   return x * y + y * z + z * x;
 }
 
-std::array<float, 9> corners(const FlatScene &scene, uint triangle) {
+std::array<float, 9> corners(const FlatScene &scene, uint item) {
+  const uint triangle = item & SUN_ID_FRAGMENT ? scene.fragments[item & SUN_ID_PRIMITIVE].primitive : item;
   std::array<float, 9> v;
   for (int corner = 0; corner < 3; corner++)
     std::copy_n(scene.vertices[scene.triangles[triangle].vertex[corner]].position, 3, v.begin() + 3 * corner);
   return v;
+}
+
+// As leaves have it.
+uint id_of(const FlatScene &scene, uint item) {
+  if (!(item & SUN_ID_FRAGMENT)) return scene.triangle_ids[item];
+  return item | (scene.triangle_ids[scene.fragments[item & SUN_ID_PRIMITIVE].primitive] & ~SUN_ID_PRIMITIVE);
 }
 
 template <class T>
@@ -202,10 +209,10 @@ TreePart lay_out_wide_mesh(const BinaryTree &tree, const FlatScene &scene) {
     for (auto &row : pack.v) std::fill(std::begin(row), std::end(row), std::numeric_limits<float>::quiet_NaN());
     std::fill(std::begin(pack.id), std::end(pack.id), 0u);
     for (uint lane = 0; lane < node.item_count; lane++) {
-      const uint triangle = tree.items[node.first_item + lane];
-      const auto v = corners(scene, triangle);
+      const uint item = tree.items[node.first_item + lane];
+      const auto v = corners(scene, item);
       for (int k = 0; k < 9; k++) pack.v[k][lane] = v[k];
-      pack.id[lane] = scene.triangle_ids[triangle];
+      pack.id[lane] = id_of(scene, item);
     }
     return uint(packs.size() - 1);
   });
@@ -264,7 +271,7 @@ TreePart lay_out_mesh(const BinaryTree &tree, Layout layout, const FlatScene &sc
   for (std::size_t i = 0; i < leaves.size(); i++) {
     const auto v = corners(scene, tree.items[i]);
     std::copy(v.begin(), v.end(), leaves[i].v);
-    leaves[i].id = scene.triangle_ids[tree.items[i]];
+    leaves[i].id = id_of(scene, tree.items[i]);
   }
   part.leaves = bytes_of(leaves);
   part.leaf_count = leaves.size();

@@ -37,7 +37,7 @@ std::size_t leaf_bytes(Layout layout);
 // Entries of the kernels' stack, shared/bvh.h.
 std::size_t stack_entries(Layout layout);
 
-// Items are numbers of triangles of `scene`.
+// Items are numbers of triangles of `scene`, or of fragments with SUN_ID_FRAGMENT.
 TreePart lay_out_mesh(const BinaryTree &tree, Layout layout, const FlatScene &scene);
 // Items are numbers of instances.
 TreePart lay_out_instances(const BinaryTree &tree, Layout layout);

@@ -106,7 +106,7 @@ void StageRunner::run(Stage stage) {
       break;
     case Stage::generate: generate_.run(bundles, frame_, scene_.records, pool_.paths, pool_.status, rays, pool_.counts); break;
     case Stage::intersect:
-      intersect_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.instances, pool_.paths,
+      intersect_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.instances, pool_.paths,
                      pool_.status, pool_.hits, rays, pool_.counts);
       break;
     case Stage::first_hit:
@@ -119,7 +119,7 @@ void StageRunner::run(Stage stage) {
       break;
     case Stage::gather_shadow_rays: gather(SUN_STATUS_SHADOW, rays, pool_.shadow_queue); break;
     case Stage::occlude:
-      occlude_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.vertices, scene_.extras,
+      occlude_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.vertices, scene_.extras,
                    scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.shadow_rays,
                    pool_.shadow_queue, pool_.counts, film_);
       break;

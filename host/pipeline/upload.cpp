@@ -55,7 +55,7 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
   frame.at_environment_cdf = records.add(scene.environment_cdf);
   const std::vector<kernel::uint> &words = records.words();
 
-  std::size_t bytes = bytes_of(scene.tree.nodes) + bytes_of(scene.tree.leaves) + bytes_of(scene.vertices) + bytes_of(scene.vertex_extras) +
+  std::size_t bytes = bytes_of(scene.tree.nodes) + bytes_of(scene.tree.leaves) + bytes_of(scene.fragments) + bytes_of(scene.vertices) + bytes_of(scene.vertex_extras) +
                       bytes_of(scene.triangles) + bytes_of(scene.instances) + bytes_of(words);
   for (const auto &page : scene.texel_pages) bytes += bytes_of(page);
   if (bytes + device.allocated() > device.info().memory)
@@ -68,6 +68,7 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
   on.leaves = Buffer<std::byte>(device, scene.tree.leaves, "leaves of the tree");
   on.instance_list = Buffer<kernel::uint>(device, scene.tree.instance_list, "instance list");
   on.roots = Buffer<kernel::uint>(device, scene.tree.roots, "roots");
+  on.fragments = Buffer<kernel::Fragment>(device, scene.fragments, "fragments");
   on.vertices = Buffer<kernel::Vertex>(device, scene.vertices, "vertices");
   on.extras = Buffer<kernel::VertexExtra>(device, scene.vertex_extras, "vertex extras");
   on.triangles = Buffer<kernel::Triangle>(device, scene.triangles, "triangles");

@@ -11,6 +11,7 @@ namespace sunstone {
 struct DeviceScene {
   Buffer<std::byte> nodes, leaves;
   Buffer<kernel::uint> instance_list, roots;
+  Buffer<kernel::Fragment> fragments;
   Buffer<kernel::Vertex> vertices;
   Buffer<kernel::VertexExtra> extras;
   Buffer<kernel::Triangle> triangles;

@@ -67,7 +67,7 @@ SUN_INLINE int prepare_ray(PreparedRay *ray, const float *origin, const float *d
     usable = usable & (fabs(o) <= SUN_LARGEST) & (fabs(d) <= SUN_LARGEST);
     const float r = 1.0f / (fabs(d) < floor_direction ? copysign(floor_direction, d) : d);
     // With u = 2^-24, a sheared vertex errs by at most u (2 |vertex - origin| + 5 |along z|), a slab by u (2 |bound - origin| + 2 |origin|).
-    const float error = fma(4.76837158e-07f, reach[axis] + reach_z, 2.38418579e-07f * fabs(o)) * fabs(r);  // 8u, 4u
+    const float error = fma(9.53674316e-07f, reach[axis] + reach_z, 4.76837158e-07f * fabs(o)) * fabs(r);  // 16u, 8u
     const float margin = error < 1e38f ? error : 1e38f;
     const float product = -(o * r);
     const float offset = product < -1e38f ? -1e38f : product < 1e38f ? product : 1e38f;

@@ -16,24 +16,13 @@
 #define SUN_TRACE_KERNEL __kernel __attribute__((vec_type_hint(float16)))
 #endif
 
-// A hint that this cache line will be read soon: rays are read in the order of a queue, so the next ones are known, and their records stand anywhere.
-// Another core wrote most of them, and the first load of one took a fifth of occlude. For CPUs, as are the wide layouts.
-#define SUN_SOON(place) ((void)0)
-#define SUN_AHEAD 4u  // entries of the queue
-#if !defined(__cplusplus) && SUN_LAYOUT != SUN_LAYOUT_BINARY && defined(__has_builtin)
-#if __has_builtin(__builtin_prefetch)
-#undef SUN_SOON
-#define SUN_SOON(place) __builtin_prefetch(place)
-#endif
-#endif
-
 SUN_NAMESPACE_BEGIN
 
 // Buffers of a Tree, as every kernel that traces takes them.
 #define TREE_PARAMETERS                                                                                                             \
   const SUN_GLOBAL uchar *nodes, const SUN_GLOBAL uchar *leaves, const SUN_GLOBAL uint *instance_list, const SUN_GLOBAL uint *roots, \
-      uint top_root
-#define TREE_ARGUMENTS nodes, leaves, instance_list, roots, top_root
+      uint top_root, const SUN_GLOBAL Fragment *fragments
+#define TREE_ARGUMENTS nodes, leaves, instance_list, roots, top_root, fragments
 
 SUN_INLINE TraceScene make_trace_scene(TREE_PARAMETERS, const SUN_GLOBAL Instance *instances, uint instance_count) {
   TraceScene scene;
@@ -41,6 +30,7 @@ SUN_INLINE TraceScene make_trace_scene(TREE_PARAMETERS, const SUN_GLOBAL Instanc
   scene.leaves = (const SUN_GLOBAL TraceLeaf *)leaves;
   scene.instance_list = instance_list;
   scene.roots = roots;
+  scene.fragments = fragments;
   scene.instances = instances;
   scene.top_root = top_root;
   scene.instance_count = instance_count;

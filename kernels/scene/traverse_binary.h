@@ -13,6 +13,7 @@ typedef struct TraceScene {
   const SUN_GLOBAL TraceLeaf *leaves;
   const SUN_GLOBAL uint *instance_list;
   const SUN_GLOBAL uint *roots;
+  const SUN_GLOBAL Fragment *fragments;
   const SUN_GLOBAL Instance *instances;
   uint top_root;
   uint instance_count;
@@ -62,10 +63,11 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
       const SUN_GLOBAL LeafTriangle *leaf = &scene->leaves[i];
       Pierced pierced;
       float t, u, v;
+      uint primitive;
       if (!pierce(leaf, ray, &pierced)) continue;
-      if (!counts(leaf, ray, place, search, &pierced, 1, &t, &u, &v)) continue;
+      if (!counts(leaf, scene->fragments, ray, place, search, &pierced, 1, &t, &u, &v, &primitive)) continue;
       if (any) return 1;
-      take_hit(search, place, t, u, v, leaf->id & SUN_ID_PRIMITIVE);
+      take_hit(search, place, t, u, v, primitive);
     }
     current = pop_node(stack, &size, box_limit(place, search));
   }

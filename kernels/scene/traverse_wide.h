@@ -25,15 +25,12 @@ typedef struct TraceScene {
   const SUN_GLOBAL TraceLeaf *leaves;
   const SUN_GLOBAL uint *instance_list;
   const SUN_GLOBAL uint *roots;
+  const SUN_GLOBAL Fragment *fragments;
   const SUN_GLOBAL Instance *instances;
   uint top_root;
   uint instance_count;
 } TraceScene;
 
-// Lanes of a comparison as bytes of 64-bit words, eight lanes a word: a portable road from a vector mask to its set lanes.
-#define LANE_BYTES 0x0101010101010101ul
-SUN_INLINE int lowest_byte(ulong bytes) { return (int)((63ul - clz(bytes & (~bytes + 1ul))) >> 3); }
-SUN_INLINE ulong bytes_of8(int8 m) { return as_ulong(convert_char8(m)) & LANE_BYTES; }
 typedef struct LaneSet {
   ulong low, high;
 } LaneSet;
@@ -179,6 +176,13 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
   uint current = root;
   float limit = box_limit(place, search);
   while (current != SUN_NONE) {
+    if (size > 0) {  // what comes next, most likely
+      const uint next = (uint)stack[size - 1];
+      const SUN_GLOBAL uchar *at = next & SUN_WIDE_LEAF ? (const SUN_GLOBAL uchar *)(scene->leaves + (next & ~SUN_WIDE_LEAF))
+                                                        : (const SUN_GLOBAL uchar *)(scene->nodes + next);
+      SUN_SOON(at);
+      SUN_SOON(at + 64);
+    }
     if (!(current & SUN_WIDE_LEAF)) {
       const SUN_GLOBAL TraceNode *node = &scene->nodes[current];
       current = any_one ? open_node_unsorted(node, ray, place->from, limit, stack, &size) : open_node(node, ray, place->from, limit, stack, &size);
@@ -189,15 +193,16 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
       const int8 pierced = pierce(pack, ray, &p);
       if (TRI_ANY(pierced)) {
         float8 t, u, v;
-        const int8 ok = counts(pack, ray, place, search, &p, pierced, &t, &u, &v);
+        uint8 primitives;
+        const int8 ok = counts(pack, scene->fragments, ray, place, search, &p, pierced, &t, &u, &v, &primitives);
         if (TRI_ANY(ok)) {
           if (any_one) return 1;
           t = ok ? t : (float8)(SUN_INFINITY);
           const float best = least_of8(t);
           const int8 nearest = ok & (t == best);
-          const uint8 id = nearest ? vload8(0, pack->id) & SUN_ID_PRIMITIVE : (uint8)(SUN_NONE);
-          const uint primitive = least_id8(id);
-          const int lane = lowest_byte(bytes_of8(id == primitive));
+          const uint8 number = nearest ? primitives : (uint8)(SUN_NONE);
+          const uint primitive = least_id8(number);
+          const int lane = lowest_byte(bytes_of8(number == primitive));
           float us[8], vs[8];
           vstore8(u, 0, us);
           vstore8(v, 0, vs);

@@ -7,10 +7,23 @@
 
 SUN_NAMESPACE_BEGIN
 
-// Set in a triangle's id inside leaves (the rest of the id is the primitive number, below 2^30).
+// Set in a triangle's id inside leaves. The rest of the id is the primitive number, below 2^29, or that of a fragment.
 #define SUN_ID_SINGLE_SIDED 0x80000000u  // seen from behind it is passed by every ray
 #define SUN_ID_PASSABLE 0x40000000u      // alpha or smooth thin transmission: does not simply block shadow rays
-#define SUN_ID_PRIMITIVE 0x3fffffffu
+#define SUN_ID_FRAGMENT 0x20000000u
+#define SUN_ID_PRIMITIVE 0x1fffffffu
+
+// A piece of a long triangle: its hits count where the box of a piece holds them. Trees hold the pieces instead of the triangle. The pieces of one
+// triangle stand together; before the first and behind the last of all there is one more, of no triangle (SUN_NONE).
+typedef struct Fragment {
+  float lower[3];
+  uint primitive;
+  float upper[3];  // wider than the piece by SUN_FRAGMENT_MARGIN of the triangle's longest extent, within the triangle's own box
+  float least_area;  // triangles that a ray sees with less than this, twice their area across the ray's longest axis, need their t found with more care
+} Fragment;
+SUN_STATIC_ASSERT(sizeof(Fragment) == 32, fragment_is_32_bytes);
+#define SUN_FRAGMENT_MARGIN 0.0009765625f  // 2^-10
+#define SUN_FRAGMENT_AREA 0.00390625f      // 2^-8: least_area over the square of the longest extent
 
 // One node of the binary layout. A leaf has count > 0.
 typedef struct BinaryNode {

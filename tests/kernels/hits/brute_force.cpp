@@ -50,21 +50,31 @@ void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell
     Place place;
     if (!enter_instance(&bare.scene, i, &ray, &world, &search, &inside, &place)) continue;
     const MeshRange &mesh = flat.meshes[flat.instance_mesh[i]];
+    uint next = mesh.first_fragment;  // in the order of their triangles
+    const uint last = next + mesh.fragment_count;
     for (uint k = mesh.first_triangle; k < mesh.first_triangle + mesh.triangle_count; k++) {
       LeafTriangle leaf;
       for (int corner = 0; corner < 3; corner++) std::copy_n(flat.vertices[flat.triangles[k].vertex[corner]].position, 3, leaf.v + 3 * corner);
-      leaf.id = flat.triangle_ids[k];
-      Pierced pierced;
-      float t, u, v;
-      if (!pierce(&leaf, &inside, &pierced) || !counts(&leaf, &inside, &place, &search, &pierced, 1, &t, &u, &v)) continue;
-      tell(search, place, t, u, v, leaf.id & SUN_ID_PRIMITIVE);
+      const auto try_leaf = [&](uint id) {
+        leaf.id = id;
+        Pierced pierced;
+        float t, u, v;
+        uint primitive;
+        if (pierce(&leaf, &inside, &pierced) &&
+            counts(&leaf, flat.fragments.data(), &inside, &place, &search, &pierced, 1, &t, &u, &v, &primitive))
+          tell(search, place, t, u, v, primitive);
+      };
+      const uint id = flat.triangle_ids[k];
+      const bool whole = next == last || flat.fragments[next].primitive != k;
+      for (; next < last && flat.fragments[next].primitive == k; next++) try_leaf(next | SUN_ID_FRAGMENT | (id & ~SUN_ID_PRIMITIVE));
+      if (whole) try_leaf(id);
     }
   }
 }
 
 TraceScene tree_scene(const FlatScene &scene, const Tree &tree) {
   return make_trace_scene(reinterpret_cast<const uchar *>(tree.nodes.data()), reinterpret_cast<const uchar *>(tree.leaves.data()),
-                          tree.instance_list.data(), tree.roots.data(), tree.top_root, scene.instances.data(), uint(scene.instances.size()));
+                          tree.instance_list.data(), tree.roots.data(), tree.top_root, scene.fragments.data(), scene.instances.data(), uint(scene.instances.size()));
 }
 
 }  // namespace
@@ -89,6 +99,8 @@ std::vector<Hit> all_hits(const FlatScene &scene, const TracedRay &from, uint wa
   std::sort(hits.begin(), hits.end(), [](const Hit &a, const Hit &b) {
     return a.t != b.t ? a.t < b.t : a.instance != b.instance ? a.instance < b.instance : a.primitive < b.primitive;
   });
+  // Where two pieces overlap a hit is found in both.
+  hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
   return hits;
 }
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "flatten/fragments.h"
+
 namespace sunstone::hits {
 namespace {
 
@@ -203,6 +205,12 @@ Case sides_and_kinds() {
   return c;
 }
 
+Case in_pieces(Case c) {
+  split_long_triangles(c.scene, {.least_triangles = 1, .splits_a_triangle = 3.0});
+  c.name += ", in pieces";
+  return c;
+}
+
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   cases.push_back(random_triangles());
@@ -212,6 +220,7 @@ std::vector<Case> all_cases() {
   cases.push_back(one_turned_instance());
   cases.push_back(far_from_origin());
   cases.push_back(sides_and_kinds());
+  for (std::size_t i = 0, whole = cases.size(); i < whole; i++) cases.push_back(in_pieces(cases[i]));
   return cases;
 }
 

@@ -21,6 +21,7 @@ Case instances();             // rotated, mirrored, scaled, overlapping, the sam
 Case one_turned_instance();   // no top tree, yet a transform
 Case far_from_origin();       // a small scene at 10^5, large coordinates and tiny triangles together
 Case sides_and_kinds();       // single-sided and passable triangles in layers, mirrored too
-std::vector<Case> all_cases();
+Case in_pieces(Case c);       // the same with its triangles cut into about four pieces each
+std::vector<Case> all_cases();  // as they are, and in pieces
 
 }  // namespace sunstone::hits

@@ -53,25 +53,27 @@ class AgainstEmbree : public testing::Test {
 
 // In general position nothing may differ but rays within rounding of an edge: a few in a million.
 TEST_F(AgainstEmbree, RandomTriangles) {
-  const Case c = random_triangles();
-  Random random(41);
-  std::vector<TracedRay> rays;
-  for (int i = 0; i < 200000; i++) rays.push_back({make_ray(random.in_box(vec3(-4), vec3(4)), random.direction())});
-  const Differences d = compare(c.scene, rays, trace(c.scene, rays), 1e-3f);
-  EXPECT_GT(d.hits, d.rays / 10);
-  EXPECT_LE(d.only_ours + d.only_theirs, 4u);
-  EXPECT_LE(d.t, 8u);
+  for (const Case &c : {random_triangles(), in_pieces(random_triangles())}) {
+    Random random(41);
+    std::vector<TracedRay> rays;
+    for (int i = 0; i < 200000; i++) rays.push_back({make_ray(random.in_box(vec3(-4), vec3(4)), random.direction())});
+    const Differences d = compare(c.scene, rays, trace(c.scene, rays), 1e-3f);
+    EXPECT_GT(d.hits, d.rays / 10) << c.name;
+    EXPECT_LE(d.only_ours + d.only_theirs, 4u) << c.name;
+    EXPECT_LE(d.t, 8u) << c.name;
+  }
 }
 
 TEST_F(AgainstEmbree, Instances) {
-  const Case c = instances();
-  Random random(42);
-  std::vector<TracedRay> rays;
-  for (int i = 0; i < 200000; i++) rays.push_back({make_ray(random.in_box(vec3(-5), vec3(5)), random.direction())});
-  const Differences d = compare(c.scene, rays, trace(c.scene, rays), 1e-3f);
-  EXPECT_GT(d.hits, d.rays / 10);
-  EXPECT_LE(d.only_ours + d.only_theirs, 8u);
-  EXPECT_LE(d.t, 16u);
+  for (const Case &c : {instances(), in_pieces(instances())}) {
+    Random random(42);
+    std::vector<TracedRay> rays;
+    for (int i = 0; i < 200000; i++) rays.push_back({make_ray(random.in_box(vec3(-5), vec3(5)), random.direction())});
+    const Differences d = compare(c.scene, rays, trace(c.scene, rays), 1e-3f);
+    EXPECT_GT(d.hits, d.rays / 10) << c.name;
+    EXPECT_LE(d.only_ours + d.only_theirs, 8u) << c.name;
+    EXPECT_LE(d.t, 16u) << c.name;
+  }
 }
 
 // Boxes that stand on a floor, seen along the axes. Rays onto the floor's square always hit; those on the grid's lines meet silhouettes of boxes,
@@ -108,7 +110,7 @@ TEST_F(AgainstEmbree, CoplanarAxisAlignedTriangles) {
 
 // Degenerate and aimed rays: whatever Embree's watertight test finds on triangles that have an inside, we may differ only at their silhouettes.
 TEST_F(AgainstEmbree, AdversarialRays) {
-  for (const Case &c : {degenerate_triangles(), far_from_origin()}) {
+  for (const Case &c : {degenerate_triangles(), far_from_origin(), in_pieces(degenerate_triangles()), in_pieces(far_from_origin())}) {
     std::vector<TracedRay> rays;
     for (const TraceRay &ray : c.rays) {
       bool plain = true;

@@ -30,6 +30,7 @@ void Tracer::load(const FlatScene &scene) {
   leaves_ = Buffer<std::byte>(device_, std::span<const std::byte>(tree.leaves), "leaves");
   list_ = Buffer<uint>(device_, std::span<const uint>(tree.instance_list), "instance list");
   roots_ = Buffer<uint>(device_, std::span<const uint>(tree.roots), "roots");
+  fragments_ = Buffer<kernel::Fragment>(device_, std::span<const kernel::Fragment>(scene.fragments), "fragments");
   instances_ = Buffer<kernel::Instance>(device_, std::span<const kernel::Instance>(scene.instances), "instances");
   top_root_ = tree.top_root;
   instance_count_ = uint(scene.instances.size());
@@ -47,7 +48,7 @@ std::vector<T> Tracer::run(const char *name, std::span<const TracedRay> rays, ui
   const Buffer<std::array<uint, 2>> passed_buffer(device_, std::span<const std::array<uint, 2>>(passed), "passed");
   const Buffer<T> result(device_, rays.size(), "result");
   Kernel kernel(program_, name);
-  kernel.run(rays.size(), ray_buffer, passed_buffer, result, uint(rays.size()), want, nodes_, leaves_, list_, roots_, top_root_, instances_,
+  kernel.run(rays.size(), ray_buffer, passed_buffer, result, uint(rays.size()), want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_,
              instance_count_);
   return result.download();
 }

@@ -29,6 +29,7 @@ class Tracer {
   Program program_;
   Buffer<std::byte> nodes_, leaves_;
   Buffer<kernel::uint> list_, roots_;
+  Buffer<kernel::Fragment> fragments_;
   Buffer<kernel::Instance> instances_;
   kernel::uint top_root_ = 0, instance_count_ = 0;
 };

@@ -56,14 +56,20 @@ class Walk {
   }
   Box triangle(const float *v, uint id) {
     ids.push_back(id);
-    const kernel::Triangle &t = scene_.triangles.at(id & SUN_ID_PRIMITIVE);
+    const kernel::Fragment *piece = id & SUN_ID_FRAGMENT ? &scene_.fragments.at(id & SUN_ID_PRIMITIVE) : nullptr;
+    const uint primitive = piece ? piece->primitive : id & SUN_ID_PRIMITIVE;
+    EXPECT_EQ(id & ~(SUN_ID_PRIMITIVE | SUN_ID_FRAGMENT), scene_.triangle_ids.at(primitive) & ~SUN_ID_PRIMITIVE);
+    const kernel::Triangle &t = scene_.triangles.at(primitive);
     Box box;
     for (int k = 0; k < 3; k++) {
       EXPECT_EQ(std::memcmp(v + 3 * k, scene_.vertices[t.vertex[k]].position, 12), 0);
       const vec3 p(v[3 * k], v[3 * k + 1], v[3 * k + 2]);
       box.include({p, p});
     }
-    return box;
+    if (!piece) return box;
+    const Box own{vec3(piece->lower[0], piece->lower[1], piece->lower[2]), vec3(piece->upper[0], piece->upper[1], piece->upper[2])};
+    EXPECT_TRUE(glm::all(glm::greaterThanEqual(own.lower, box.lower)) && glm::all(glm::lessThanEqual(own.upper, box.upper)));
+    return own;
   }
   Box visit_binary(uint number, std::size_t depth) {
     deepest = std::max(deepest, depth);
@@ -137,8 +143,15 @@ void check(const FlatScene &scene, Layout layout) {
     walk.visit(tree.roots[i]);
     const MeshRange &range = scene.meshes[mesh];
     const std::multiset<uint> got(walk.ids.begin(), walk.ids.end());
-    const std::multiset<uint> expected(scene.triangle_ids.begin() + range.first_triangle,
-                                       scene.triangle_ids.begin() + range.first_triangle + range.triangle_count);
+    std::multiset<uint> expected;  // every fragment, and every triangle that has none
+    std::set<uint> in_pieces;
+    for (uint f = range.first_fragment; f < range.first_fragment + range.fragment_count; f++) {
+      const uint primitive = scene.fragments[f].primitive;
+      in_pieces.insert(primitive);
+      expected.insert(f | SUN_ID_FRAGMENT | (scene.triangle_ids[primitive] & ~SUN_ID_PRIMITIVE));
+    }
+    for (uint k = range.first_triangle; k < range.first_triangle + range.triangle_count; k++)
+      if (!in_pieces.count(k)) expected.insert(scene.triangle_ids[k]);
     EXPECT_TRUE(got == expected) << "mesh " << mesh << ": " << got.size() << " of " << expected.size();
     EXPECT_LE(walk.stack, room);
     EXPECT_LE(walk.deepest, tree.depth);
