@@ -11,6 +11,7 @@ namespace sunstone {
 
 struct CommandContext {
   Notices notices;
+  bool quiet = false;   // -q: warnings, but no notes
   int exit_status = 0;  // of work that was done, with an answer that is no success: pictures that differ
 };
 

@@ -12,7 +12,8 @@ namespace {
 
 void show(const char *kind, const std::string &text) { std::fprintf(stderr, "sunstone: %s: %s\n", kind, text.c_str()); }
 
-void show_notice(const sunstone::Notice &notice) {
+void show_notice(const sunstone::Notice &notice, bool quiet) {
+  if (quiet && notice.kind == sunstone::Notice::Kind::note) return;
   const std::string text = notice.place.empty() ? notice.text : notice.place + ": " + notice.text;
   show(notice.kind == sunstone::Notice::Kind::warning ? "warning" : "note", text);
 }
@@ -26,7 +27,7 @@ int main(int argc, char **argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(38);
   app.footer("Example: sunstone render scenes/cornell/cornell.gltf --size 512x512 -o cornell.png");
-  CommandContext context{Notices(show_notice), 0};
+  CommandContext context{Notices([&context](const Notice &notice) { show_notice(notice, context.quiet); })};
   add_render(app, context);
   add_devices(app, context);
   add_verify(app, context);

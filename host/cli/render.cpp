@@ -210,6 +210,7 @@ void Render::run() {
     const std::string text = render_stats(session_, film, {startup_, render_seconds_, reproducible_});
     write_file(o_.stats, std::as_bytes(std::span(text)));
   }
+  if (settings_.double_count) notices_.warning("--double-count", "direct light is counted twice, on purpose: the picture is wrong, and its metadata says so");
   if (film.clamped) notices_.note("", fmt::format("{} contributions were beyond the film's range and clamped", film.clamped));
   if (film.nan) notices_.warning("", fmt::format("{} contributions were not finite and dropped", film.nan));
   progress_.line(fmt::format("{}{} samples per pixel in {}, {}samples/s, film hash {}", interrupted() ? "interrupted: " : "", film.sample_count(), show_seconds(render_seconds_),
@@ -235,6 +236,7 @@ void add_render(CLI::App &app, CommandContext &context) {
                   "  sunstone render model.glb --samples 0:512 -o first-half.film");
   command->callback([options, &context] {
     options->view.transparent_background = options->background == "transparent";
+    context.quiet = options->quiet;
     Render(*options, context.notices).run();
   });
 }

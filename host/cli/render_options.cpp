@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "cli/commands.h"
 #include "pipeline/plan.h"
+#include "shared/frame.h"
 
 namespace sunstone {
 
@@ -70,6 +71,12 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--seed", o.seed, "Another seed gives independent noise [0]")->check(CLI::Range(0ull, 0xffffffffull))->type_name("N")->group("Picture");
   command.add_option("--sampler", o.sampler, "sobol (Owen-scrambled), or independent [sobol]")->check(CLI::IsMember({"sobol", "independent"}))->type_name("NAME")->group("Picture");
   command.add_option("--filter", o.filter, "box, tent, gaussian, mitchell or blackman-harris [blackman-harris]")->type_name("NAME")->group("Picture");
+  command.add_flag("--end-on-light", o.end_on_light, "pure: a path ends on the light that it hits, as in the lecture")->group("Integrator");
+  command.add_option("--sampling", o.sampling, "pure: directions by bsdf, cosine or uniform: what the pdf is worth [bsdf]")->type_name("NAME")->group("Integrator");
+  command.add_option("--light-samples", o.light_samples, "hybrid: shadow rays a vertex, 1 to 64 [1]")->type_name("N")->group("Integrator");
+  command.add_option("--nee", o.nee, "hybrid: shadow rays at every hit, or at the camera ray's first hit alone [every]")->type_name("every|first")->group("Integrator");
+  command.add_option("--absorption", o.absorption, "hybrid: chance that a path ends at a scattering, from 0 to below 1 [by its throughput]")->type_name("A")->group("Integrator");
+  command.add_flag("--double-count", o.double_count, "hybrid: the classic mistake, on purpose: a light that is hit counts beside its shadow rays")->group("Integrator");
   command.add_option("--camera", o.camera, "The file's camera of this name or number [0]")->type_name("NAME|INDEX")->group("Camera");
   command.add_option("--look-from", o.look_from, "A camera here ...")->type_name("X,Y,Z")->group("Camera");
   command.add_option("--look-at", o.look_at, "... looking there")->type_name("X,Y,Z")->group("Camera");
@@ -124,6 +131,40 @@ SampleRange parse_samples(const RenderOptions &o) {
   return range;
 }
 
+// What single integrators take, refused elsewhere.
+static void read_integrator_flags(const RenderOptions &o, RenderSettings &s) {
+  const Plan &plan = integrator(s.integrator);
+  if (o.end_on_light) check_flag(plan, "--end-on-light");
+  s.end_on_light = o.end_on_light;
+  if (o.sampling) {
+    check_flag(plan, "--sampling");
+    s.sampling = sampling_from_name(*o.sampling);
+  }
+  if (o.light_samples) {
+    check_flag(plan, "--light-samples");
+    const std::string place = "--light-samples " + std::to_string(*o.light_samples);
+    if (*o.light_samples < 1) throw UsageError(place, "hybrid without shadow rays is pure path tracing", "use --integrator pure");
+    if (*o.light_samples > SUN_MOST_LIGHT_SAMPLES)
+      throw UsageError(place, "is more than " + std::to_string(SUN_MOST_LIGHT_SAMPLES) + ": each vertex of each of up to " + std::to_string(s.max_depth) +
+                                  " scatterings would send as many rays, and each path in flight take " + std::to_string(*o.light_samples) + " x 64 bytes",
+                       "more --spp spreads them over the pixel instead");
+    s.light_samples = static_cast<unsigned>(*o.light_samples);
+  }
+  if (o.nee) {
+    check_flag(plan, "--nee");
+    if (*o.nee != "every" && *o.nee != "first") throw UsageError("--nee " + printable(*o.nee), "is neither every nor first");
+    s.nee_first = *o.nee == "first";
+  }
+  if (o.absorption) {
+    check_flag(plan, "--absorption");
+    if (!(*o.absorption >= 0 && *o.absorption < 1)) throw UsageError("--absorption", "is a chance from 0 to below 1: at 1 no path would scatter");
+    s.absorption = static_cast<float>(*o.absorption);
+    if (!(s.absorption < 1)) throw UsageError("--absorption", "rounds to 1");
+  }
+  if (o.double_count) check_flag(plan, "--double-count");
+  s.double_count = o.double_count;
+}
+
 RenderSettings render_settings(const RenderOptions &o) {
   RenderSettings s;
   const auto size = split(o.size, 'x');
@@ -143,8 +184,8 @@ RenderSettings render_settings(const RenderOptions &o) {
       throw UsageError("--crop " + printable(o.crop), "is not a window of the " + o.size + " picture");
   }
   s.integrator = o.integrator;
-  integrator(s.integrator);
   s.max_depth = o.max_depth;
+  read_integrator_flags(o, s);
   s.seed = static_cast<std::uint32_t>(o.seed);
   s.independent = o.sampler == "independent";
   s.filter = filter_from_name(o.filter);

@@ -22,6 +22,10 @@ struct RenderOptions {
   std::optional<double> seconds, error, update;
   unsigned max_depth = 16;
   unsigned long long seed = 0;
+  bool end_on_light = false, double_count = false;
+  std::optional<std::string> sampling, nee;
+  std::optional<long long> light_samples;
+  std::optional<double> absorption;
   std::string camera, look_from, look_at, up = "y";
   std::optional<double> fov, aperture, focus;
   std::string environment, background = "scene";

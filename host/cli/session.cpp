@@ -65,14 +65,16 @@ LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, L
   if (!o.environment.empty()) loaded.scene.environment = content.import_environment(o.environment, notices);
   loaded.scene.environment.rotation = static_cast<float>(o.environment_rotation / 360.0);
   loaded.scene.environment.strength = static_cast<float>(o.environment_strength);
-  content.add_defaults(loaded.scene, aspect, o.scene, notices);
+  content.add_defaults(loaded.scene, aspect, o.scene, o.look_from.empty() && o.camera.empty(), notices);
   const Plan &plan = integrator(settings.integrator);
   for (const Light &light : loaded.scene.lights) {
     const char *kind = light.kind == Light::Kind::point ? "point" : light.kind == Light::Kind::spot ? "spot" : "directional";
     if (std::ranges::find(plan.refuses, kind) != plan.refuses.end())
       throw Error(o.scene, fmt::format("has a {} light, which no path of --integrator {} can meet: its radiance comes from areas and environments alone", kind, plan.name),
-                  "--integrator path renders it");
+                  "--integrator path and --integrator hybrid render it");
   }
+  if (settings.nee_first && !loaded.scene.lights.empty())
+    throw Error(o.scene, "has point, spot or directional lights, which no path meets by chance: with --nee first all that they light indirectly would be missing", "--nee every renders it");
   const Camera camera = choose_camera(content, o, loaded.scene, aspect);
   loaded.import_seconds = now() - begun;
   const std::size_t estimate = content.estimate_memory(loaded.scene, layout).total();

@@ -30,7 +30,7 @@ struct Content {
   Bounds (*scene_bounds)(const Scene &scene) = nullptr;
   Camera (*default_camera)(const Scene &scene, float aspect) = nullptr;
   Camera (*look_camera)(glm::vec3 from, glm::vec3 at, glm::vec3 up, float yfov) = nullptr;
-  void (*add_defaults)(Scene &scene, float aspect, const std::string &file, Notices &notices) = nullptr;
+  void (*add_defaults)(Scene &scene, float aspect, const std::string &file, bool camera_wanted, Notices &notices) = nullptr;
   // flatten/.
   MemoryEstimate (*estimate_memory)(const Scene &scene, Layout layout) = nullptr;
   FlatScene (*flatten)(const Scene &scene, const FlattenOptions &options, Notices &notices) = nullptr;

@@ -23,12 +23,14 @@ Hash hash_of(const FlatScene &flat) {
   add(flat.triangles);
   add(flat.triangle_ids);
   add(flat.triangle_emitter);
+  add(flat.triangle_object);
   add(flat.fragments);
   for (const MeshRange &mesh : flat.meshes) {
     hasher.value(mesh.first_triangle);
     hasher.value(mesh.triangle_count);
   }
   add(flat.instance_mesh);
+  add(flat.instance_object);
   add(flat.instances);
   add(flat.materials);
   add(flat.texture_refs);
@@ -78,8 +80,8 @@ MemoryEstimate estimate_memory(const Scene &scene, Layout layout) {
     }
   }
   estimate.geometry = vertices * (sizeof(kernel::Vertex) + (extras ? sizeof(kernel::VertexExtra) : 0)) +
-                      triangles * (sizeof(kernel::Triangle) + 2 * sizeof(kernel::uint)) + triangles / 2 * sizeof(kernel::Fragment) +
-                      instances * (sizeof(kernel::Instance) + 2 * sizeof(kernel::uint));
+                      triangles * (sizeof(kernel::Triangle) + 3 * sizeof(kernel::uint)) + triangles / 2 * sizeof(kernel::Fragment) +
+                      instances * (sizeof(kernel::Instance) + 3 * sizeof(kernel::uint));
   // Leaves are about half full; a node of W children leads to about W / 2 others.
   const std::size_t items = triangles + triangles / 3 + instances;  // pieces of long triangles with them
   switch (layout) {

@@ -46,9 +46,11 @@ struct FlatScene {
   std::vector<kernel::Triangle> triangles;
   std::vector<kernel::uint> triangle_ids;           // primitive number and SUN_ID_ bits, by triangle
   std::vector<kernel::uint> triangle_emitter;       // number among its mesh's emissive triangles, or SUN_NONE
+  std::vector<kernel::uint> triangle_object;        // of a baked mesh: the number of the scene's instance, from 1; else 0
   std::vector<kernel::Fragment> fragments;          // pieces of long triangles, and one at either end
   std::vector<MeshRange> meshes;
   std::vector<kernel::uint> instance_mesh;          // into meshes, by instance
+  std::vector<kernel::uint> instance_object;        // the number of the scene's instance, from 1; 0 for the one that holds the baked meshes
   std::vector<kernel::Instance> instances;
   std::vector<kernel::Material> materials;
   std::vector<kernel::TextureRef> texture_refs;
@@ -63,7 +65,7 @@ struct FlatScene {
   Bounds bounds;
   Tree tree;
   Hash scene_hash;
-  bool has_passable = false, has_textures = false, has_specular = false;
+  bool has_passable = false, has_textures = false, has_specular = false;  // textures, or colours of vertices
 };
 
 struct FlattenOptions {

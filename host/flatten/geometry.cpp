@@ -58,6 +58,7 @@ struct Part {
   const WeldedPrimitive *welded = nullptr;
   Placement placement;
   uint material = 0;
+  uint object = 0;        // where it is baked: the number of its instance, from 1
   std::size_t range = 0;  // mesh range
   std::size_t first_vertex = 0, first_triangle = 0, triangles = 0;
 };
@@ -143,6 +144,7 @@ void write_triangles(const Part &part, FlatScene &flat) {
     triangle.material = part.material;
     flat.triangles[to] = triangle;
     flat.triangle_ids[to] = static_cast<uint>(to) | bits;
+    flat.triangle_object[to] = part.object;
     to++;
   }
 }
@@ -221,7 +223,7 @@ void number_emitters(FlatScene &flat) {
 // The instances of the mesh ranges: the identity for what was baked, then those of the meshes kept in their own space, in the scene's order.
 void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const std::vector<std::size_t> &range_of_mesh, bool any_baked,
                      FlatScene &flat, Notices &notices) {
-  const auto add = [&](const Placement &p, std::size_t range) {
+  const auto add = [&](const Placement &p, std::size_t range, std::size_t object) {
     kernel::Instance instance{};
     std::copy(std::begin(p.m), std::end(p.m), instance.to_world);
     invert(p, instance.to_object);
@@ -229,14 +231,16 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
     instance.first_emitter = SUN_NONE;
     flat.instances.push_back(instance);
     flat.instance_mesh.push_back(static_cast<uint>(range));
+    flat.instance_object.push_back(static_cast<uint>(object));
   };
   if (any_baked && flat.meshes[0].triangle_count) {
-    add({}, 0);
+    add({}, 0, 0);
     flat.instances[0].flags = SUN_INSTANCE_IDENTITY;
   }
-  for (const Instance &instance : scene.instances) {
-    const auto mesh = static_cast<std::size_t>(instance.mesh);
-    if (!uses[mesh].baked && flat.meshes[range_of_mesh[mesh]].triangle_count) add(placement_of(instance.transform), range_of_mesh[mesh]);
+  for (std::size_t i = 0; i < scene.instances.size(); i++) {
+    const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
+    if (!uses[mesh].baked && flat.meshes[range_of_mesh[mesh]].triangle_count)
+      add(placement_of(scene.instances[i].transform), range_of_mesh[mesh], i + 1);
   }
 
   std::vector<Bounds> local(flat.meshes.size()), boxes(flat.instances.size());
@@ -267,10 +271,12 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
       flat.bounds.upper[c] = std::max(flat.bounds.upper[c], instance.upper[c]);
     }
     flat.instances[to] = instance;
-    flat.instance_mesh[to++] = flat.instance_mesh[i];
+    flat.instance_mesh[to] = flat.instance_mesh[i];
+    flat.instance_object[to++] = flat.instance_object[i];
   }
   flat.instances.resize(to);
   flat.instance_mesh.resize(to);
+  flat.instance_object.resize(to);
   if (far)
     notices.warning(scene.name, std::to_string(far) + " instances lie beyond 1e18 m or cannot be inverted in single precision; they are left out");
 }
@@ -327,20 +333,21 @@ void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat
   // Where each goes: what is baked first, instance by instance, then the other meshes.
   std::vector<Part> parts;
   std::vector<std::size_t> range_of_mesh(scene.meshes.size());
-  const auto add_parts = [&](std::size_t m, const Placement &placement, std::size_t range) {
+  const auto add_parts = [&](std::size_t m, const Placement &placement, std::size_t object, std::size_t range) {
     for (std::size_t k = 0; k < welded[m].size(); k++) {
       const Primitive &primitive = scene.meshes[m].primitives[k];
-      parts.push_back({&primitive, &welded[m][k], placement, material_number(scene, primitive.material), range, 0, 0, 0});
+      parts.push_back({&primitive, &welded[m][k], placement, material_number(scene, primitive.material), static_cast<uint>(object), range, 0, 0, 0});
     }
   };
-  for (const Instance &instance : scene.instances)
-    if (const auto m = static_cast<std::size_t>(instance.mesh); uses[m].baked) add_parts(m, placement_of(instance.transform), 0);
+  for (std::size_t i = 0; i < scene.instances.size(); i++)
+    if (const auto m = static_cast<std::size_t>(scene.instances[i].mesh); uses[m].baked)
+      add_parts(m, placement_of(scene.instances[i].transform), i + 1, 0);
   const bool any_baked = !parts.empty();
   std::size_t ranges = any_baked ? 1 : 0;
   for (std::size_t m = 0; m < uses.size(); m++)
     if (uses[m].instances && !uses[m].baked) {
       range_of_mesh[m] = ranges;
-      add_parts(m, {}, ranges++);
+      add_parts(m, {}, 0, ranges++);
     }
 
   std::size_t vertices = 0;
@@ -351,6 +358,7 @@ void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat
   check_size("vertices", vertices, sizeof(kernel::Vertex), max_bytes);
   if (vertices >= SUN_NONE) throw Error{"flatten", "more than 2^32 vertices"};
   const bool extras = extras_wanted(scene, flat, uses);
+  flat.has_textures = flat.has_textures || extras;
   if (extras) check_size("vertices with tangents or colours", vertices, sizeof(kernel::VertexExtra), max_bytes);
   flat.vertices.resize(vertices);
   flat.vertex_extras.resize(extras ? vertices : 1);
@@ -372,6 +380,7 @@ void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat
   check_size("triangles", triangles, sizeof(kernel::Triangle), max_bytes);
   flat.triangles.resize(triangles);
   flat.triangle_ids.resize(triangles);
+  flat.triangle_object.resize(triangles);
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) { write_triangles(parts[i], flat); });
   if (dropped) notices.note(scene.name, std::to_string(dropped) + " triangles without area are left out");
 
@@ -385,6 +394,7 @@ void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat
     flat.meshes.push_back({static_cast<uint>(triangles), 0});
     flat.instances.push_back(instance);
     flat.instance_mesh.push_back(static_cast<uint>(flat.meshes.size() - 1));
+    flat.instance_object.push_back(0);
   }
   if (flat.bounds.empty()) {
     flat.bounds.lower = glm::vec3(-1);

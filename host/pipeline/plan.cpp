@@ -4,18 +4,38 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "pipeline/settings.h"
 
 namespace sunstone {
 
 std::span<const Plan> integrators() {
   using enum Stage;
   static const std::vector<Plan> table = {
-      {"path", "path tracing with next-event estimation, multiple importance sampling and roulette", "Kajiya 1986, Veach 1997", true,
-       {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette}, {}},
-      {"pure", "path tracing as the equation says: light is found by chance alone", "Kajiya 1986", false,
-       {gather_paths, generate, intersect, first_hit, shade, roulette}, {"point", "spot", "directional"}},
+      {"path", "path tracing with next-event estimation, multiple importance sampling and roulette", "Kajiya 1986, Veach 1997", true, true,
+       {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette}, {}, {}},
+      {"pure", "path tracing as the equation says: light is found by chance alone", "Kajiya 1986", false, false,
+       {gather_paths, generate, intersect, first_hit, shade, roulette}, {"point", "spot", "directional"}, {"--end-on-light", "--sampling"}},
+      {"hybrid", "light sampling for what is direct, path tracing for what is not", "the lecture's speed-up", true, false,
+       {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette}, {},
+       {"--light-samples", "--nee", "--absorption", "--double-count"}},
   };
   return table;
+}
+
+const char *sampling_name(Sampling sampling) { return sampling == Sampling::bsdf ? "bsdf" : sampling == Sampling::cosine ? "cosine" : "uniform"; }
+
+Sampling sampling_from_name(const std::string &name) {
+  for (const Sampling sampling : {Sampling::bsdf, Sampling::cosine, Sampling::uniform})
+    if (name == sampling_name(sampling)) return sampling;
+  throw UsageError("--sampling " + printable(name), "no such way; there are bsdf, cosine, uniform");
+}
+
+void check_flag(const Plan &plan, const std::string &flag) {
+  if (std::ranges::find(plan.takes, flag) != plan.takes.end()) return;
+  std::string takers;
+  for (const Plan &other : integrators())
+    if (std::ranges::find(other.takes, flag) != other.takes.end()) takers += (takers.empty() ? "" : " or ") + ("--integrator " + other.name);
+  throw UsageError(flag, "means nothing to --integrator " + plan.name, "it belongs to " + takers);
 }
 
 const Plan &integrator(const std::string &name) {

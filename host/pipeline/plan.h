@@ -12,15 +12,20 @@ enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_s
 
 struct Plan {
   std::string name, summary, source;
-  bool direct = false;      // shade sends shadow rays, and weights the emitters that are hit against them
+  bool direct = false;      // shade sends shadow rays
+  bool weighted = false;    // and weights them and the emitters that are hit against each other; else each light has one of the two
   std::vector<Stage> walk;  // one step of every path; repeated until all have ended
   std::vector<std::string> refuses;  // emitters that no path of it can meet: "point", "spot", "directional"
+  std::vector<std::string> takes;    // flags of its own
 };
 
 std::span<const Plan> integrators();
 
 // UsageError with the names there are.
 const Plan &integrator(const std::string &name);
+
+// UsageError where a flag that belongs to single integrators does not belong to this one.
+void check_flag(const Plan &plan, const std::string &flag);
 
 // The queue that a stage needs has to be filled by one before it, and each that is filled has to be emptied: Error naming both otherwise.
 void check_plan(const Plan &plan);

@@ -31,8 +31,10 @@ std::vector<Tile> split(const RenderSettings &s, std::size_t bytes_a_pixel, std:
   return tiles;
 }
 
-unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths) {
+unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths, unsigned light_samples) {
   unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : 1u << 14;  // on CPUs the pool stays in the caches
+  constexpr unsigned most_shadow_rays = 1u << 22;  // 256 MiB of them
+  if (!tuning.pool) pool = std::min(pool, most_shadow_rays / light_samples);
   if (!tuning.pool && paths < pool) pool = static_cast<unsigned>(std::max<std::uint64_t>(paths, 16));
   return std::max(16u, (pool + 15) / 16 * 16);
 }
@@ -120,6 +122,13 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   frame.filter_negative_from = filter.negative_from;
   if (settings.transparent_background) frame.flags |= SUN_FRAME_TRANSPARENT;
   if (s.plan.direct) frame.flags |= SUN_FRAME_DIRECT;
+  if (s.plan.weighted) frame.flags |= SUN_FRAME_WEIGHTED;
+  if (settings.nee_first) frame.flags |= SUN_FRAME_FIRST;
+  if (settings.double_count) frame.flags |= SUN_FRAME_TWICE;
+  if (settings.end_on_light) frame.flags |= SUN_FRAME_END_ON_LIGHT;
+  frame.sampling = settings.sampling == Sampling::uniform ? SUN_SAMPLING_UNIFORM : settings.sampling == Sampling::cosine ? SUN_SAMPLING_COSINE : SUN_SAMPLING_BSDF;
+  frame.light_samples = settings.light_samples;
+  frame.absorption = settings.absorption;
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
 
   for (const Stage stage : s.plan.walk) {
@@ -130,8 +139,8 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   const std::size_t bytes_a_pixel = s.film.layers.size() * SUN_FILM_CHANNELS * SUN_FILM_BINS * sizeof(std::int64_t);
   const std::size_t room = device.info().memory > device.allocated() ? (device.info().memory - device.allocated()) / 2 : 0;
   s.tiles = split(settings, bytes_a_pixel, std::min(device.info().max_allocation, room));
-  frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16);
-  s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk);
+  frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16, settings.light_samples);
+  s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk, settings.light_samples);
   s.device_frame = Buffer<kernel::Frame>(device, 1, "frame");
   s.device_film = Buffer<std::int64_t>(
       device, s.film.layers.size() * static_cast<std::size_t>(s.tiles[0].width) * static_cast<std::size_t>(s.tiles[0].height) * SUN_FILM_CHANNELS * SUN_FILM_BINS, "film");
@@ -325,7 +334,7 @@ std::size_t Renderer::pool_bytes() const {
 std::map<std::string, std::string> film_settings(const RenderSettings &s, const kernel::Camera &camera) {
   Hasher hasher;
   hasher.bytes(&camera, sizeof camera);
-  return {{"integrator", s.integrator},
+  std::map<std::string, std::string> all = {{"integrator", s.integrator},
           {"max_depth", std::to_string(s.max_depth)},
           {"roulette_depth", std::to_string(s.roulette_depth)},
           {"seed", std::to_string(s.seed)},
@@ -334,6 +343,16 @@ std::map<std::string, std::string> film_settings(const RenderSettings &s, const 
           {"filter_radius", fmt::format("{}", s.filter.radius)},
           {"background", s.transparent_background ? "transparent" : "scene"},
           {"camera", hasher.digest().hex()}};
+  for (const std::string &flag : integrator(s.integrator).takes) {
+    const std::string name = flag.substr(2);
+    if (flag == "--end-on-light") all[name] = s.end_on_light ? "yes" : "no";
+    if (flag == "--sampling") all[name] = sampling_name(s.sampling);
+    if (flag == "--light-samples") all[name] = std::to_string(s.light_samples);
+    if (flag == "--nee") all[name] = s.nee_first ? "first" : "every";
+    if (flag == "--absorption") all[name] = s.absorption < 0 ? "by throughput" : fmt::format("{}", s.absorption);
+    if (flag == "--double-count") all[name] = s.double_count ? "yes: wrong on purpose, direct light counts twice" : "no";
+  }
+  return all;
 }
 
 }  // namespace sunstone

@@ -15,6 +15,11 @@ struct LayerChoice {
   bool bounces = false, albedo = false, normal = false, depth = false, position = false, object = false, material = false, alpha = false;
 };
 
+// How a path's directions are drawn: as the bsdf asks, or without a look at it.
+enum class Sampling { bsdf, cosine, uniform };
+const char *sampling_name(Sampling sampling);
+Sampling sampling_from_name(const std::string &name);  // UsageError with the names there are
+
 struct RenderSettings {
   int width = 1280, height = 720;
   int x0 = 0, y0 = 0, x1 = 1280, y1 = 720;  // crop window, half-open
@@ -24,6 +29,13 @@ struct RenderSettings {
   bool independent = false;  // sampler: plain hashes instead of Sobol'
   Filter filter;
   bool transparent_background = false;
+  // Of single integrators: Plan::takes.
+  bool end_on_light = false;
+  Sampling sampling = Sampling::bsdf;
+  unsigned light_samples = 1;  // shadow rays a vertex
+  bool nee_first = false;      // shadow rays from the camera ray's hit alone
+  float absorption = -1;       // chance to end at each scattering; negative: by the throughput
+  bool double_count = false;   // wrong on purpose
   LayerChoice layers;
 };
 

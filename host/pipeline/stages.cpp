@@ -56,13 +56,14 @@ Programs::Programs(const Device &device, const Variant &v, const CompileProgress
       roulette(build_stage(device, "roulette", shading(v), 5, progress)),
       compact(build_stage(device, "compact", {{"SUN_CHUNK", static_cast<int>(v.chunk)}}, 6, progress)) {}
 
-Pool::Pool(const Device &device, unsigned slots_, unsigned chunk)
+Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light_samples_)
     : slots(slots_),
       chunks((slots_ + chunk - 1) / chunk),
+      light_samples(light_samples_),
       paths(device, static_cast<std::size_t>(slots) * kernel::SUN_PATH_WORDS, "paths"),
       status(device, slots, "path status"),
       hits(device, slots, "hits"),
-      shadow_rays(device, slots, "shadow rays"),
+      shadow_rays(device, static_cast<std::size_t>(slots) * light_samples, "shadow rays"),
       rays{Buffer<kernel::uint>(device, slots, "ray queue"), Buffer<kernel::uint>(device, slots, "ray queue")},
       shadow_queue(device, slots, "shadow queue"),
       chunk_counts(device, chunks, "queue chunks"),
@@ -119,9 +120,10 @@ void StageRunner::run(Stage stage) {
       break;
     case Stage::gather_shadow_rays: gather(SUN_STATUS_SHADOW, rays, pool_.shadow_queue); break;
     case Stage::occlude:
-      occlude_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.vertices, scene_.extras,
+      for (unsigned number = 0; number < pool_.light_samples; number++)
+        occlude_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.vertices, scene_.extras,
                    scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.shadow_rays,
-                   pool_.shadow_queue, pool_.counts, film_);
+                   pool_.shadow_queue, pool_.counts, film_, number * pool_.slots);
       break;
     case Stage::roulette: roulette_.run(bundles, frame_, pool_.paths, pool_.status, rays, pool_.counts); break;
   }

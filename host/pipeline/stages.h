@@ -42,12 +42,12 @@ struct Programs {
 
 // Paths and queues of one pool.
 struct Pool {
-  Pool(const Device &device, unsigned slots, unsigned chunk);
-  unsigned slots, chunks;
+  Pool(const Device &device, unsigned slots, unsigned chunk, unsigned light_samples);
+  unsigned slots, chunks, light_samples;
   Buffer<kernel::uint> paths;       // SUN_PATH_WORDS a slot
   Buffer<kernel::uint> status;
   Buffer<kernel::Hit> hits;
-  Buffer<kernel::ShadowRay> shadow_rays;
+  Buffer<kernel::ShadowRay> shadow_rays;  // light_samples times the slots: the first ray of each slot, then the second of each ...
   Buffer<kernel::uint> rays[2];     // the ray queue and its successor
   Buffer<kernel::uint> shadow_queue;
   Buffer<kernel::uint> chunk_counts;

@@ -45,6 +45,8 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
   tables.resize(SUN_TABLE_FLOATS);
   std::ranges::copy(filter, tables.begin() + SUN_TABLE_FILTER);
   frame.at_triangle_emitter = records.add(scene.triangle_emitter);
+  frame.at_triangle_object = records.add(scene.triangle_object);
+  frame.at_instance_object = records.add(scene.instance_object);
   frame.at_materials = records.add(scene.materials);
   frame.at_texture_refs = records.add(scene.texture_refs);
   frame.at_textures = records.add(scene.textures);

@@ -49,13 +49,13 @@ struct Direction {
   double weight;             // of two views that show about the same, the one that people expect
 };
 
-// Three-quarter views all round, thirty degrees off the axes and twenty up; straight on; and from above. Things face +z by custom, and are shown from
-// there or from the right of it where no other side has more to show.
+// Three-quarter views all round, thirty degrees off the axes and twenty up; straight on; and from above. Things face +z by custom [glTF20, 3.3], and are
+// shown from there or from the right of it unless another side shows half as much again: a box that is open at the back.
 std::vector<Direction> directions() {
   std::vector<Direction> list;
   const auto add = [&](float azimuth, float elevation, double weight) {
     const float turned = azimuth > 180 ? 360 - azimuth : azimuth;
-    list.push_back({azimuth, elevation, weight - 0.1 * turned / 180});
+    list.push_back({azimuth, elevation, weight - (turned > 90 ? 0.35 : 0.1) * turned / 180});
   };
   for (const float azimuth : {30.0f, 330.0f, 60.0f, 300.0f, 120.0f, 240.0f, 150.0f, 210.0f}) add(azimuth, 20, 1.02);
   for (int i = 0; i < 8; i++) add(45 * static_cast<float>(i), 0, 0.98);
@@ -137,14 +137,14 @@ static Environment soft_sky() {
   return sky;
 }
 
-void add_defaults(Scene &scene, float aspect, const std::string &file, Notices &notices) {
+void add_defaults(Scene &scene, float aspect, const std::string &file, bool camera_wanted, Notices &notices) {
   if (!emits(scene)) {
     scene.environment = soft_sky();
     notices.note(file, !scene.lights.empty()
                            ? "its lights are all black; lit by a soft sky (CIE overcast, radiance 1 at the zenith)"
                            : "has no light, no emissive surface and no environment; lit by a soft sky (CIE overcast, radiance 1 at the zenith)");
   }
-  if (scene.cameras.empty()) {
+  if (camera_wanted && scene.cameras.empty()) {
     const Camera camera = default_camera(scene, aspect);
     const glm::vec3 from = camera.transform[3];
     char text[120];

@@ -16,6 +16,6 @@ Camera default_camera(const Scene &scene, float aspect);
 Camera look_camera(glm::vec3 from, glm::vec3 at, glm::vec3 up, float yfov);
 
 // Adds a soft sky (CIE overcast, radiance 1 at the zenith) and its note where nothing emits; a note for the camera where there is none.
-void add_defaults(Scene &scene, float aspect, const std::string &file, Notices &notices);
+void add_defaults(Scene &scene, float aspect, const std::string &file, bool camera_wanted, Notices &notices);
 
 }  // namespace sunstone

@@ -35,7 +35,7 @@ typedef struct FilmView {
 // Keys tell the contributions of one sample apart, for their dither. The same contribution added to two layers (beauty and its bounce) takes the same
 // key, and so the same integer: that is why beauty is exactly the sum of its bounces. `vertex` counts the path's hits.
 #define SUN_FILM_KEY_EMISSION(vertex) (4u * (vertex))
-#define SUN_FILM_KEY_DIRECT(vertex) (4u * (vertex) + 1u)
+#define SUN_FILM_KEY_DIRECT(vertex, number) (4u * ((vertex) + ((number) << 20)) + 1u)
 #define SUN_FILM_KEY_LAYER(layer) (4u * (layer) + 2u)  // first-hit layers: albedo, normal ...
 
 // Adds one 64-bit integer.

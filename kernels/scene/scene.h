@@ -20,6 +20,7 @@ typedef struct Scene {
   const SUN_GLOBAL Triangle *triangles;
   const SUN_GLOBAL Instance *instances;
   const SUN_GLOBAL uint *triangle_emitter;
+  const SUN_GLOBAL uint *triangle_object, *instance_object;
   const SUN_GLOBAL Material *materials;
   const SUN_GLOBAL TextureRef *texture_refs;
   const SUN_GLOBAL Texture *textures;
@@ -47,6 +48,8 @@ SUN_FN Scene open_scene(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS) {
   scene.triangles = triangles;
   scene.instances = instances;
   scene.triangle_emitter = records + frame->at_triangle_emitter;
+  scene.triangle_object = records + frame->at_triangle_object;
+  scene.instance_object = records + frame->at_instance_object;
   scene.materials = (const SUN_GLOBAL Material *)(records + frame->at_materials);
   scene.texture_refs = (const SUN_GLOBAL TextureRef *)(records + frame->at_texture_refs);
   scene.textures = (const SUN_GLOBAL Texture *)(records + frame->at_textures);

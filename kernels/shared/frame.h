@@ -30,8 +30,18 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 
 // Flags of a frame.
 #define SUN_FRAME_TRANSPARENT 1u   // camera rays that leave the scene add nothing
-#define SUN_FRAME_DIRECT 2u        // shade sends shadow rays to emitters, and emitters that are hit are weighted against them
+#define SUN_FRAME_DIRECT 2u        // shade sends shadow rays to emitters
 #define SUN_FRAME_EXTRAS 4u        // VertexExtra[] is as long as Vertex[]
+#define SUN_FRAME_WEIGHTED 8u      // shadow rays and emitters that are hit share their worth by the power heuristic; else each light has one of the two
+#define SUN_FRAME_FIRST 16u        // shadow rays leave from the camera ray's hit alone
+#define SUN_FRAME_TWICE 32u        // wrong on purpose: emitters that are hit count in full beside shadow rays
+#define SUN_FRAME_END_ON_LIGHT 64u // a path ends on the emitter that it hits
+
+// How directions are drawn: as the bsdf asks, or without a look at it (what is no delta): with a cosine, or evenly.
+#define SUN_SAMPLING_BSDF 0u
+#define SUN_SAMPLING_COSINE 1u
+#define SUN_SAMPLING_UNIFORM 2u
+#define SUN_MOST_LIGHT_SAMPLES 64
 
 #define SUN_FILTER_TABLE 1024  // cells of the filter's inverse cdf
 
@@ -64,7 +74,11 @@ typedef struct Frame {
   uint at_emitters, at_lights, at_tables, at_environment_texels;
   uint at_environment_cdf;
   float filter_negative_from;    // |offset| beyond which the filter's factor is negative; beyond the radius for all but Mitchell
-  uint pad[3];
+  uint at_triangle_object, at_instance_object;
+  uint sampling;                 // SUN_SAMPLING_: how directions are drawn
+  uint light_samples;            // shadow rays a vertex
+  float absorption;              // chance to end at each scattering, whatever the throughput; negative: by the throughput
+  uint pad[2];
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 

@@ -31,7 +31,7 @@
 #define SUN_PASSABLE 1
 #endif
 
-// 1 where the scene has anything but diffuse surfaces; 1 where it has textures. 0 leaves the code out: compiled sooner, the same bits.
+// 1 where the scene has anything but diffuse surfaces; 1 where it has textures, or colours of vertices. 0 leaves the code out: compiled sooner, the same bits.
 #ifndef SUN_SPECULAR
 #define SUN_SPECULAR 1
 #endif

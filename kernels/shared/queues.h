@@ -13,6 +13,8 @@ SUN_NAMESPACE_BEGIN
 #define SUN_STATUS_FIRST_HIT 0x00040000u   // the layers of the first hit have been written
 #define SUN_STATUS_ENDED 0x00080000u       // the path has just ended and is not counted yet
 #define SUN_STATUS_ENDED_SHIFT 20          // why it ended, below
+#define SUN_STATUS_SHADOWS 0x7f000000u     // how many shadow rays wait
+#define SUN_STATUS_SHADOWS_SHIFT 24
 #define SUN_ENDED_LIGHT 0
 #define SUN_ENDED_DEPTH 1
 #define SUN_ENDED_ESCAPED 2
@@ -48,14 +50,15 @@ SUN_STATIC_ASSERT(sizeof(Hit) == 32, hit_is_32_bytes);
 // One shadow ray, as shade leaves it for occlude.
 typedef struct ShadowRay {
   float origin[3];
-  float t_max;            // hits at t < t_max block
+  float t_max;            // hits at t < t_max block; negative: no ray, in a slot where others wait
   float direction[3];     // not normalised where the target is a point: t_max is then 1 - a little
   uint pixel;
   float contribution[3];  // to the film where nothing blocks
   uint sample;
   uint depth;             // the layer it belongs to
   uint vertex;            // keys the random numbers of alpha along the ray
-  uint pad[2];
+  uint number;            // among the shadow rays of this vertex
+  uint pad;
 } ShadowRay;
 SUN_STATIC_ASSERT(sizeof(ShadowRay) == 64, shadow_ray_is_64_bytes);
 

@@ -18,10 +18,11 @@ __kernel void count_chunks(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uint 
   uint begin = chunk * SUN_CHUNK;
   if (begin >= length) return;
   uint end = begin + SUN_CHUNK < length ? begin + SUN_CHUNK : length;
-  uint found = 0, ended[SUN_ENDED_COUNT] = {0, 0, 0, 0}, straight = 0, bounces = 0;
+  uint found = 0, ended[SUN_ENDED_COUNT] = {0, 0, 0, 0}, straight = 0, bounces = 0, shadows = 0;
   for (uint i = begin; i < end; i++) {
     uint slot = queue[i], word = status[slot];
     found += (word & bit) != 0;
+    if (bit == SUN_STATUS_SHADOW) shadows += (word & SUN_STATUS_SHADOWS) >> SUN_STATUS_SHADOWS_SHIFT;
     if (bit == SUN_STATUS_ALIVE) {
       uint alive = (word & SUN_STATUS_ALIVE) != 0, deep = (word & SUN_STATUS_DEPTH) != 0;
       bounces += alive & deep;
@@ -39,6 +40,7 @@ __kernel void count_chunks(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uint 
     if (ended[reason]) atomic_add(counts + SUN_COUNT_ENDED + reason, ended[reason]);
   if (straight) atomic_add(counts + SUN_COUNT_RAYS, straight);
   if (bounces) atomic_add(counts + SUN_COUNT_RAYS + 1, bounces);
+  if (shadows) atomic_add(counts + SUN_COUNT_RAYS + 2, shadows);
 }
 
 // One work-item: chunk counts -> where each chunk's entries begin; then the lengths, and what generate shall fill.
@@ -52,7 +54,6 @@ __kernel void scan(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *counts, SUN_G
   }
   if (bit == SUN_STATUS_SHADOW) {
     counts[SUN_COUNT_SHADOW] = sum;
-    counts[SUN_COUNT_RAYS + 2] += sum;
     return;
   }
   uint next = counts[SUN_COUNT_NEXT_PATH], paths = counts[SUN_COUNT_PATHS], left = paths > next ? paths - next : 0, free_slots = frame->pool - sum;

@@ -55,9 +55,12 @@ SUN_BODY void first_hit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, 
   layer_add(&film, frame->layer_depth, present, &path, key.pixel_hash, splat3(dot3(sub3(surface.position, eye), forward) * weight));
   layer_add(&film, frame->layer_position, present, &path, key.pixel_hash, scale3(surface.position, weight));
   layer_add(&film, frame->layer_alpha, present, &path, key.pixel_hash, splat3(weight));
-  // Numbers cannot be averaged: they are those of sample 0, counted from 1, so that 0 is nothing.
+  // Numbers cannot be averaged: they are those of sample 0, counted from 1, so that 0 is nothing. Objects are the scene's instances.
   mask leading = present & (path.sample == (uint_n)(0));
-  layer_add(&film, frame->layer_object, leading, &path, key.pixel_hash, splat3(real_of_uint(hit.instance + (uint_n)(1))));
+  if (frame->layer_object != SUN_NONE) {
+    uint_n object = gather_uint(scene->instance_object, hit.instance) + gather_uint(scene->triangle_object, hit.primitive);
+    layer_add(&film, frame->layer_object, leading, &path, key.pixel_hash, splat3(real_of_uint(object)));
+  }
   layer_add(&film, frame->layer_material, leading, &path, key.pixel_hash, splat3(real_of_uint(surface.material + (uint_n)(1))));
   store_uint(status, lanes.slot, present, word | (uint_n)(SUN_STATUS_FIRST_HIT));
 }

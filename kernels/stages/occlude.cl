@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // occlude: shadow rays -> what of their contribution arrives -> film. One ray a work-item; LANES is 1 here.
-//   reads    shadow rays; the tree; materials of what a ray may pass
+//   reads    shadow rays, from the `first` on: a vertex that sends several has one in each part of the pool's size; the tree; materials of what a ray may pass
 //   writes   film
 //   queues   shadow_rays
 //   holds    transmittance is multiplied nearest first, so its bits do not depend on the tree
@@ -9,10 +9,10 @@
 #include "scene/traverse.h"
 
 SUN_BODY void occlude_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_PARAMETERS, const SUN_GLOBAL ShadowRay *shadow_rays,
-                          const SUN_GLOBAL uint *queue, FilmCounts counts, FilmWords film_words, uint position) {
+                          const SUN_GLOBAL uint *queue, FilmCounts counts, FilmWords film_words, uint first, uint position) {
   if (position >= counts[SUN_COUNT_SHADOW]) return;
-  const SUN_GLOBAL ShadowRay *shadow = shadow_rays + queue[position];
-  if (position + SUN_AHEAD < counts[SUN_COUNT_SHADOW]) SUN_SOON(shadow_rays + queue[position + SUN_AHEAD]);
+  const SUN_GLOBAL ShadowRay *shadow = shadow_rays + first + queue[position];
+  if (position + SUN_AHEAD < counts[SUN_COUNT_SHADOW]) SUN_SOON(shadow_rays + first + queue[position + SUN_AHEAD]);
   TraceScene tree = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count);
   const float4 from = vload4(0, shadow->origin), along = vload4(0, shadow->direction);  // with the word behind: see intersect.cl
   Ray ray;
@@ -23,6 +23,7 @@ SUN_BODY void occlude_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_
   ray.direction[1] = along.y;
   ray.direction[2] = along.z;
   ray.t_max = from.w;
+  if (ray.t_max < 0.0f) return;
   ray.passed_t = 0.0f;
   ray.passed_instance = ray.passed_primitive = SUN_NONE;
   if (any_hit(&tree, ray, SUN_WANT_OPAQUE)) return;
@@ -49,10 +50,10 @@ SUN_BODY void occlude_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_
   }
 #endif
   FilmView film = open_film(frame, film_words, counts);
-  film_contribute(frame, &film, shadow->pixel, shadow->sample, SUN_FILM_KEY_DIRECT(shadow->vertex), shadow->depth, worth.x, worth.y, worth.z);
+  film_contribute(frame, &film, shadow->pixel, shadow->sample, SUN_FILM_KEY_DIRECT(shadow->vertex, shadow->number), shadow->depth, worth.x, worth.y, worth.z);
 }
 
 SUN_TRACE_KERNEL void occlude(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_PARAMETERS, const SUN_GLOBAL ShadowRay *shadow_rays,
-                              const SUN_GLOBAL uint *queue, FilmCounts counts, FilmWords film_words) {
-  occlude_ray(frame, TREE_ARGUMENTS, SCENE_ARGUMENTS, shadow_rays, queue, counts, film_words, (uint)get_global_id(0));
+                              const SUN_GLOBAL uint *queue, FilmCounts counts, FilmWords film_words, uint first) {
+  occlude_ray(frame, TREE_ARGUMENTS, SCENE_ARGUMENTS, shadow_rays, queue, counts, film_words, first, (uint)get_global_id(0));
 }

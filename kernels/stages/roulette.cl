@@ -4,7 +4,7 @@
 //   writes   throughput; status
 //   queues   rays -> rays (by the alive bit of the status)
 //   holds    the expected throughput of a path is what it was
-//   source   [Arvo90]
+//   source   [Arvo90]; a fixed chance, as the lecture has it, where absorption is not negative
 #include "math/sampler.h"
 #include "path/path.h"
 #include "path/queue.h"
@@ -19,16 +19,19 @@ SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *pa
   QueueLanes lanes = queue_lanes(rays, first, length);
   uint_n word = gather_uint(status, lanes.slot);
   uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
-  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0)) & (depth >= (uint_n)(frame->roulette_depth));
+  mask fixed = frame->absorption >= 0.0f ? lanes.active : lanes.active & !lanes.active;
+  uint first_depth = frame->absorption >= 0.0f ? 1u : frame->roulette_depth;
+  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0)) & (depth >= (uint_n)(first_depth));
   if (!ANY(active)) return;
   Paths paths;
   paths.words = path_words;
   paths.pool = frame->pool;
   Path path = path_load(&paths, lanes.slot);
   real brightest = max_real(max_real(fabs(path.throughput_r), fabs(path.throughput_g)), fabs(path.throughput_b));
-  active = active & (brightest < 1.0f);
+  // A fixed chance is taken once a scattering: not where the ray went straight on.
+  active = active & (fixed ? path.passed_instance == (uint_n)(SUN_NONE) : brightest < 1.0f);
   if (!ANY(active)) return;
-  real survival = max_real(brightest, (real)(SUN_ROULETTE_LEAST));
+  real survival = fixed ? (real)(1.0f - frame->absorption) : max_real(brightest, (real)(SUN_ROULETTE_LEAST));
   uint_n y = path.pixel / (uint_n)(frame->tile_width);
   uint_n x = path.pixel - y * (uint_n)(frame->tile_width);
   SamplerKey key = sampler_key(frame->seed, x + (uint_n)(frame->tile_x0), y + (uint_n)(frame->tile_y0), path.sample, frame->sampler);
@@ -40,7 +43,7 @@ SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *pa
   path.throughput_g = path.throughput_g / survival;
   path.throughput_b = path.throughput_b / survival;
   path_store(&paths, lanes.slot, lives, &path);
-  uint_n ended = (word & (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_SHADOW | SUN_STATUS_FIRST_HIT)) |
+  uint_n ended = (word & (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_SHADOW | SUN_STATUS_SHADOWS | SUN_STATUS_FIRST_HIT)) |
                  (uint_n)(SUN_STATUS_ENDED | (SUN_ENDED_ABSORBED << SUN_STATUS_ENDED_SHIFT));
   store_uint(status, lanes.slot, dies, ended);
 }

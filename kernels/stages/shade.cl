@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // shade: what a hit adds to the film, and where its path goes next.
 //   reads    hits; every column of the path; status
-//   writes   film; every column of the path; status; a shadow ray where SUN_FRAME_DIRECT is set
+//   writes   film; every column of the path; status; shadow rays where SUN_FRAME_DIRECT is set
 //   queues   rays -> rays, shadow_rays (by bits of the status; compact makes the queues)
 //   holds    afterwards a path is alive with a ray to trace, or has ended with a reason, never both
 //   source   [Kajiya86 eq. 1], weights [Veach97 9.2]
@@ -12,15 +12,17 @@
 #include "transport/emission.h"
 #include "transport/scatter.h"
 
-SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, const DirectSample *direct, vec3 worth, const Path *path, uint_n depth) {
+SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, mask stored, const DirectSample *direct, vec3 worth, const Path *path,
+                              uint_n depth, uint number) {
+  real t_max = direct->valid ? direct->t_max : (real)(-1.0f);
   // In the order of shared/queues.h.
   uint_n words[16] = {bits_of_real(direct->origin.x),    bits_of_real(direct->origin.y),    bits_of_real(direct->origin.z),
-                      bits_of_real(direct->t_max),       bits_of_real(direct->direction.x), bits_of_real(direct->direction.y),
+                      bits_of_real(t_max),               bits_of_real(direct->direction.x), bits_of_real(direct->direction.y),
                       bits_of_real(direct->direction.z), path->pixel,                       bits_of_real(worth.x),
                       bits_of_real(worth.y),             bits_of_real(worth.z),             path->sample,
-                      depth,                             path->vertex,                      (uint_n)(0),
+                      depth,                             path->vertex,                      (uint_n)(number),
                       (uint_n)(0)};
-  store_records((SUN_GLOBAL uint *)shadow_rays, slots, direct->valid, words);
+  store_records((SUN_GLOBAL uint *)shadow_rays, slots, stored, words);
 }
 
 SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
@@ -53,7 +55,7 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
   mask escaped = active & !hit.hit;
   if (ANY(escaped)) {
     mask seen = (frame->flags & SUN_FRAME_TRANSPARENT) ? escaped & (depth != (uint_n)(0)) : escaped;
-    radiance = escaped_emission(scene, direction, path.pdf_solid_angle, seen);
+    radiance = escaped_emission(scene, direction, depth, path.pdf_solid_angle, seen);
   }
   uint_n next_word = (uint_n)(SUN_STATUS_ENDED | (SUN_ENDED_ESCAPED << SUN_STATUS_ENDED_SHIFT)) | depth | kept;
 
@@ -68,27 +70,39 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
     mask present = found & !straight;
     throughput = mul3(throughput, surface_absorption(scene, &surface, hit.t, present));
     arrived = throughput;
-    vec3 emission = hit_emission(scene, &surface, &hit, path.pdf_solid_angle, present);
+    mask glowing;
+    vec3 emission = hit_emission(scene, &surface, &hit, depth, path.pdf_solid_angle, present, &glowing);
     radiance = select3(present, emission, radiance);
-    mask glowing = present & (max_of3(emission) > 0.0f);
     mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
     mask limited = present & (depth >= (uint_n)(frame->max_depth));
     // At the limit a path may still go straight on through smooth thin glass, which is no scattering.
     mask passable = (surface.material_flags & (uint_n)(SUN_MATERIAL_PASSABLE)) != (uint_n)(0);
     mask scatters = present & !unlit & (!limited | passable);
+    if (frame->flags & SUN_FRAME_END_ON_LIGHT) scatters = scatters & !glowing;
     // Why the path ends here, if it does.
     uint_n reason = glowing ? (uint_n)(SUN_ENDED_LIGHT) : limited ? (uint_n)(SUN_ENDED_DEPTH) : (uint_n)(SUN_ENDED_ABSORBED);
-    mask turned = found & !found, shadow = turned;
+    mask turned = found & !found;
+    uint_n shadows = (uint_n)(0);
     if (ANY(scatters)) {
       Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
       vec3 wo_local = to_local(&surface.shading, wo);
       Lobes lobes = bsdf_lobes(&bsdf, scene->tables, wo_local);
-      if ((frame->flags & SUN_FRAME_DIRECT) && frame->emitter_count > 0) {
-        real u_choice = sample_1d(&key, SUN_DIM_EMITTER(path.vertex));
-        vec2 u_point = sample_2d(&key, SUN_DIM_EMITTER_POINT(path.vertex));
-        DirectSample direct = sample_direct(scene, &surface, &lobes, wo_local, u_choice, u_point, scatters & !limited);
-        store_shadow_rays(shadow_rays, lanes.slot, &direct, mul3(throughput, direct.contribution), &path, depth + (uint_n)(1));
-        shadow = direct.valid;
+      mask asks = scatters & !limited;
+      if (frame->flags & SUN_FRAME_FIRST) asks = asks & (depth == (uint_n)(0));
+      if ((frame->flags & SUN_FRAME_DIRECT) && frame->emitter_count > 0 && ANY(asks)) {
+        uint rays_a_vertex = frame->light_samples;
+        real share = (real)(1.0f / (float)rays_a_vertex);
+        SamplerKey light_key = key;
+        for (uint number = 0; number < rays_a_vertex; number++) {
+          light_key.sample = key.sample * (uint_n)(rays_a_vertex) + (uint_n)(number);  // further points of the same sequence
+          real u_choice = sample_1d(&light_key, SUN_DIM_EMITTER(path.vertex));
+          vec2 u_point = sample_2d(&light_key, SUN_DIM_EMITTER_POINT(path.vertex));
+          DirectSample direct = sample_direct(scene, &surface, &lobes, wo_local, u_choice, u_point, asks);
+          vec3 worth = mul3(throughput, scale3(direct.contribution, share));
+          store_shadow_rays(shadow_rays + (size_t)number * frame->pool, lanes.slot, rays_a_vertex > 1 ? asks : direct.valid, &direct, worth, &path,
+                            depth + (uint_n)(1), number);
+          shadows = shadows + (direct.valid ? (uint_n)(1) : (uint_n)(0));
+        }
       }
       real u_lobe = sample_1d(&key, SUN_DIM_LOBE(path.vertex));
       vec2 u = sample_2d(&key, SUN_DIM_DIRECTION(path.vertex));
@@ -110,7 +124,8 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
     path.passed_primitive = turned ? (uint_n)(SUN_NONE) : straight ? hit.primitive : path.passed_primitive;
     mask alive = turned | straight;
     uint_n ended_word = (uint_n)(SUN_STATUS_ENDED) | (reason << (uint_n)(SUN_STATUS_ENDED_SHIFT));
-    uint_n found_word = (alive ? (uint_n)(SUN_STATUS_ALIVE) : ended_word) | (shadow ? (uint_n)(SUN_STATUS_SHADOW) : (uint_n)(0));
+    uint_n found_word = (alive ? (uint_n)(SUN_STATUS_ALIVE) : ended_word) | (shadows << (uint_n)(SUN_STATUS_SHADOWS_SHIFT));
+    found_word = found_word | (shadows != (uint_n)(0) ? (uint_n)(SUN_STATUS_SHADOW) : (uint_n)(0));
     found_word = found_word | (turned ? depth + (uint_n)(1) : depth);
     next_word = found ? found_word | kept : next_word;
   }

@@ -111,7 +111,8 @@ SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lo
     mask same_side = (dot3(direction, s->normal) > 0.0f) == (wi_local.z > 0.0f);
     valid = valid & same_side & (max_of3(eval.f_cos) > 0.0f);
     // A light is a delta: no ray finds it by chance, so it keeps its whole weight.
-    real weight = is_light ? (real)(1.0f) : power_heuristic(pdf, eval.pdf);
+    real weight = (real)(1.0f);
+    if (frame->flags & SUN_FRAME_WEIGHTED) weight = is_light ? weight : power_heuristic(pdf, eval.pdf);
     real scale = valid ? weight / (valid ? pdf : (real)(1.0f)) : (real)(0.0f);
     direct.contribution = select3(valid, scale3(mul3(eval.f_cos, emission), scale), black);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The worth of an emitter that a ray ran into: all of it where no shadow ray could have counted it, otherwise weighted against that.
+// The worth of an emitter that a ray ran into: all of it where no shadow ray could have counted it, otherwise weighted against that, or nothing.
 #ifndef SUN_TRANSPORT_EMISSION_H
 #define SUN_TRANSPORT_EMISSION_H
 #include "math/measure.h"
@@ -8,11 +8,15 @@
 
 SUN_NAMESPACE_BEGIN
 
-// Weight of a hit whose direction was drawn with pdf_solid_angle (0: delta) where a shadow ray draws it with pdf_emitter (0: never) [Veach97 9.2].
-SUN_FN real emission_weight(const Scene *scene, real pdf_solid_angle, real pdf_emitter) {
-  if ((scene->frame->flags & SUN_FRAME_DIRECT) == 0) return (real)(1.0f);
+// Weight of a hit after `depth` scatterings whose direction was drawn with pdf_solid_angle (0: delta), where a shadow ray draws it with pdf_emitter (0:
+// never) [Veach97 9.2]. Without weights it counts where no shadow ray from the vertex before could have: seen directly, or after a delta.
+SUN_FN real emission_weight(const Scene *scene, uint_n depth, real pdf_solid_angle, real pdf_emitter) {
+  uint flags = scene->frame->flags;
+  if ((flags & SUN_FRAME_DIRECT) == 0 || (flags & SUN_FRAME_TWICE)) return (real)(1.0f);
   mask alone = (pdf_solid_angle <= 0.0f) | (pdf_emitter <= 0.0f);
-  return alone ? (real)(1.0f) : power_heuristic(pdf_solid_angle, pdf_emitter);
+  if (flags & SUN_FRAME_WEIGHTED) return alone ? (real)(1.0f) : power_heuristic(pdf_solid_angle, pdf_emitter);
+  if (flags & SUN_FRAME_FIRST) alone = alone | (depth != (uint_n)(1));
+  return alone ? (real)(1.0f) : (real)(0.0f);
 }
 
 // Solid-angle pdf with which direct.h would send a shadow ray from the ray's origin to this point of the surface.
@@ -29,16 +33,17 @@ SUN_FN real emitter_pdf(const Scene *scene, const Surface *s, const HitLanes *hi
   return usable ? pmf * (hit->t * hit->t) / ((usable ? s->area : (real)(1.0f)) * (usable ? cosine : (real)(1.0f))) : (real)(0.0f);
 }
 
-// Radiance times weight that a hit surface sends back along the ray.
-SUN_FN vec3 hit_emission(const Scene *scene, const Surface *s, const HitLanes *hit, real pdf_solid_angle, mask active) {
+// Radiance times weight that a hit surface sends back along the ray; `glowing` where it sends any, whatever the weight.
+SUN_FN vec3 hit_emission(const Scene *scene, const Surface *s, const HitLanes *hit, uint_n depth, real pdf_solid_angle, mask active, mask *glowing) {
   vec3 emission = surface_emission(scene, s, active);
   mask emits = active & (max_of3(emission) > 0.0f);
+  *glowing = emits;
   if (!ANY(emits) || scene->frame->emitter_count == 0) return emission;
-  return scale3(emission, emission_weight(scene, pdf_solid_angle, emitter_pdf(scene, s, hit, emits)));
+  return scale3(emission, emission_weight(scene, depth, pdf_solid_angle, emitter_pdf(scene, s, hit, emits)));
 }
 
 // The same for a ray that leaves the scene.
-SUN_FN vec3 escaped_emission(const Scene *scene, vec3 direction, real pdf_solid_angle, mask active) {
+SUN_FN vec3 escaped_emission(const Scene *scene, vec3 direction, uint_n depth, real pdf_solid_angle, mask active) {
   vec3 black = splat3((real)(0.0f));
   const SUN_GLOBAL Environment *environment = &scene->frame->environment;
   if (environment->kind == SUN_ENVIRONMENT_NONE || !ANY(active)) return black;
@@ -46,7 +51,7 @@ SUN_FN vec3 escaped_emission(const Scene *scene, vec3 direction, real pdf_solid_
   real pdf = (real)(0.0f);
   if (environment->emitter != SUN_NONE)
     pdf = scene->emitters[environment->emitter].pmf * environment_pdf(environment, scene->environment_cdf, direction);
-  return select3(active, scale3(radiance, emission_weight(scene, pdf_solid_angle, pdf)), black);
+  return select3(active, scale3(radiance, emission_weight(scene, depth, pdf_solid_angle, pdf)), black);
 }
 
 SUN_NAMESPACE_END

@@ -55,6 +55,24 @@ TEST(Render, WritesEveryOutputAndNothingElse) {
     for (std::size_t c = 0; c < 3; c++) ASSERT_EQ(values[i * static_cast<std::size_t>(image.channels) + c], beauty[i * 3 + c]);
 }
 
+// A file without light and camera: what was done about it is said, but for -q, and for a camera that is given anyway.
+TEST(Render, NotesAreSaidUnlessQuiet) {
+  const TemporaryFolder folder;
+  RunOptions run;
+  run.folder = folder / "";
+  const std::string bare = folder / "bare.obj";
+  std::ofstream(bare) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+  const auto notes = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"render", bare, "--size", "8x8", "--spp", "1", "--max-depth", "1", "-o", "a.png"});
+    const Ended ended = run_sunstone(words, run);
+    EXPECT_EQ(ended.status, 0) << ended.error;
+    return lines_of(ended.error, "note");
+  };
+  EXPECT_EQ(notes({}).size(), 2u);
+  EXPECT_EQ(notes({"--look-from", "1,2,3", "--look-at", "0,0,0"}).size(), 1u) << "of the light alone";
+  EXPECT_EQ(notes({"-q"}).size(), 0u);
+}
+
 TEST(Render, WithoutOutputTheScenesStem) {
   const TemporaryFolder folder;
   render(folder, {"--spp", "1"});

@@ -89,6 +89,20 @@ TEST(Usage, NamesThatAreNotKnown) {
   expect_refusal({}, 2, "");
 }
 
+// Flags of single integrators: elsewhere they are refused by the name of the one that takes them, and so are values that mean nothing.
+TEST(Usage, FlagsOfOneIntegrator) {
+  expect_refusal({"render", cornell, "--end-on-light"}, 2, "--end-on-light");
+  expect_refusal({"render", cornell, "--sampling", "cosine"}, 2, "--integrator path");
+  expect_refusal({"render", cornell, "--integrator", "pure", "--light-samples", "2"}, 2, "--integrator pure");
+  expect_refusal({"render", cornell, "--integrator", "pure", "--sampling", "even"}, 2, "even");
+  expect_refusal({"render", cornell, "--integrator", "hybrid", "--light-samples", "0"}, 2, "pure");
+  expect_refusal({"render", cornell, "--integrator", "hybrid", "--light-samples", "-3"}, 2, "pure");
+  expect_refusal({"render", cornell, "--integrator", "hybrid", "--light-samples", "65"}, 2, "65");
+  expect_refusal({"render", cornell, "--integrator", "hybrid", "--nee", "last"}, 2, "last");
+  for (const char *chance : {"1", "-0.1", "nan", "0.99999999999"})
+    expect_refusal({"render", cornell, "--integrator", "hybrid", "--absorption", chance}, 2, "--absorption");
+}
+
 TEST(Usage, OutputsThatCannotBeWritten) {
   expect_refusal({"render", cornell, "-o", "no-such-folder/out.png"}, 1, "no-such-folder");
   expect_refusal({"render", cornell, "-o", "folder.png"}, 1, "folder.png");

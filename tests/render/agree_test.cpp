@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "support/render.h"
 #include "support/scenes.h"
@@ -13,7 +14,7 @@ namespace sunstone::test {
 namespace {
 
 constexpr double false_alarms = 1e-6;  // a run of this program
-constexpr int tests_here = 8;          // each takes its share
+constexpr int tests_here = 13;         // each takes its share
 constexpr std::uint32_t seeds = 48;    // of few samples each: more degrees of freedom for the same work
 
 struct Work {
@@ -127,6 +128,116 @@ TEST(Agree, LampOverGloss) {
   add(scene, quad({0, 1.2f, -0.6f}, {0.7f, 0, 0}, {0, 0, 0.5f}), lamp({4, 5, 6}));
   add_camera(scene, {0, 1.1f, 1.6f}, {0, 0, -0.2f}, 30);
   expect_agreement(Case(std::move(scene)), picture(24, 16, 1), {64, 256}, path_and_pure);
+}
+
+// Ways of the same integrator, beside `path`.
+struct Way {
+  const char *name;
+  std::function<void(RenderSettings &)> set;
+  std::uint64_t samples;
+};
+
+// Films of `path` and of each way over the same seeds; p values of all blocks, bounces and channels.
+void expect_ways_agree(const Case &scene, const RenderSettings &settings, std::uint64_t path_samples, const std::vector<Way> &ways, bool expected = true) {
+  const std::vector<Film> reference = render_seeds(scene, settings, path_samples, seeds);
+  for (const Way &way : ways) {
+    RenderSettings with = settings;
+    way.set(with);
+    const std::vector<Film> films = render_seeds(scene, with, way.samples, seeds);
+    std::vector<double> p;
+    std::vector<std::string> name;
+    for (unsigned depth = 0; depth <= settings.max_depth; depth++)
+      for (int y = 0; y + 8 <= settings.height; y += 8)
+        for (int x = 0; x + 8 <= settings.width; x += 8)
+          for (int channel = 0; channel < 3; channel++) {
+            const std::string layer = "bounce." + std::to_string(depth);
+            const std::vector<double> a = means(reference, layer, {x, y, x + 8, y + 8}, channel), b = means(films, layer, {x, y, x + 8, y + 8}, channel);
+            p.push_back(welch(a, b));
+            name.push_back(layer + " at " + std::to_string(x) + "," + std::to_string(y) + " channel " + std::to_string(channel) + ": " + std::to_string(moments(a).mean) + ", " +
+                           std::to_string(moments(b).mean));
+          }
+    const std::vector<std::size_t> rejected = holm_rejected(p, false_alarms / tests_here / static_cast<double>(ways.size()));
+    std::string what;
+    for (std::size_t i = 0; i < rejected.size() && i < 12; i++) what += "\n  " + name[rejected[i]] + ", p = " + std::to_string(p[rejected[i]]);
+    EXPECT_EQ(rejected.empty(), expected) << way.name << ": " << rejected.size() << " of " << p.size() << " means differ" << what;
+    const Moments m = moments(means(films, "bounce.1", whole(films[0]), 1));
+    EXPECT_LT(std::sqrt(m.variance / seeds), 0.02 * m.mean) << way.name << " is too noisy to tell";
+  }
+}
+
+Way hybrid(const char *name, std::uint64_t samples, const std::function<void(RenderSettings &)> &set) {
+  return {name, [set](RenderSettings &s) { s.integrator = "hybrid", set(s); }, samples};
+}
+
+Way pure(const char *name, std::uint64_t samples, const std::function<void(RenderSettings &)> &set) {
+  return {name, [set](RenderSettings &s) { s.integrator = "pure", set(s); }, samples};
+}
+
+// The lecture's speed-up in both forms; glossy and clear surfaces, alpha, a map, instances.
+TEST(Agree, HybridInEveryForm) {
+  Scene scene = everything();
+  expect_ways_agree(Case(scene), picture(48, 32, 4), 32,
+                    {hybrid("every", 32, [](RenderSettings &) {}), hybrid("five shadow rays", 16, [](RenderSettings &s) { s.light_samples = 5; }),
+                     hybrid("absorption", 48, [](RenderSettings &s) { s.absorption = 0.3f; })});
+}
+
+TEST(Agree, HybridFromTheFirstHitAlone) {
+  Scene scene = everything();
+  scene.lights.clear();
+  set_sky_map(scene, sky_map(16, 8, {4, 3.5f, 3}));
+  expect_ways_agree(Case(std::move(scene)), picture(48, 32, 4), 32,
+                    {hybrid("first", 48, [](RenderSettings &s) { s.nee_first = true; }), hybrid("first, three shadow rays", 48, [](RenderSettings &s) {
+                       s.nee_first = true;
+                       s.light_samples = 3;
+                     })});
+}
+
+// The classic mistake is seen to be one.
+TEST(Agree, CountingTwiceDoesNot) {
+  expect_ways_agree(Case::file(scene_file("cornell/cornell.gltf")), picture(32, 32, 3), 12,
+                    {hybrid("double count", 48, [](RenderSettings &s) { s.double_count = true; })}, false);
+}
+
+// Whatever the density that directions are drawn with, what is expected stays: over matt, glossy, mirroring and clear surfaces, and a base coat on matt.
+// None is so glossy that even directions hardly ever find the highlight, as that is what they are bad at.
+TEST(Agree, PureByAnyDensity) {
+  Scene scene;
+  add(scene, quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}), matt({0.7f, 0.5f, 0.3f}));
+  Material coat = metal({0.2f, 0.3f, 0.8f}, 0.6f);
+  coat.metallic = 0;
+  add(scene, sphere({-1.2f, 0.5f, 0}, 0.5f, 12), coat);
+  Material varnish = coat;
+  varnish.roughness = 0;
+  add(scene, sphere({0, 0.5f, 0}, 0.5f, 12), varnish);
+  add(scene, sphere({1.2f, 0.5f, 0}, 0.5f, 12), metal({0.9f, 0.7f, 0.5f}, 0.7f));
+  add(scene, quad({-0.8f, 0.5f, 1}, {0.4f, 0, 0}, {0, 0.5f, 0}), thin_glass({0.6f, 0.9f, 0.7f}, 0.7f));
+  add(scene, quad({0.1f, 0.5f, 1}, {0.4f, 0, 0}, {0, 0.5f, 0}), thin_glass({0.6f, 0.7f, 0.9f}));
+  add(scene, sphere({0.9f, 0.4f, 1.2f}, 0.4f, 12), glass({0.2f, 0.5f, 0.9f}, 0.8f));
+  set_sky_map(scene, sky_map(16, 8, {3, 2.5f, 2}));
+  add_camera(scene, {0, 1.2f, 4.5f}, {0, 0.5f, 0}, 38);
+  expect_ways_agree(Case(std::move(scene)), picture(48, 32, 2), 64,
+                    {pure("cosine", 96, [](RenderSettings &s) { s.sampling = Sampling::cosine; }),
+                     pure("uniform", 96, [](RenderSettings &s) { s.sampling = Sampling::uniform; })});
+}
+
+// Where every surface shines, a path that ends on light ends at once: all it brings is the first surface's own, and it is counted as ended on light.
+TEST(Agree, EndingOnLight) {
+  Scene scene;
+  Material glowing = matt({0.5f, 0.5f, 0.5f});
+  glowing.emission = {1, 1, 1};
+  add(scene, box({-1, -1, -1}, {1, 1, 1}, true), glowing);
+  add_camera(scene, {0, 0, 0}, {0, 0, -1}, 60);
+  const Case made(std::move(scene));
+  RenderSettings s = picture(16, 16, 6);
+  s.filter = box_filter();
+  s.integrator = "pure";
+  const Rendered on = render(made, s, {0, 8});
+  s.end_on_light = true;
+  const Rendered ended = render(made, s, {0, 8});
+  const Film &film = ended.film;
+  EXPECT_DOUBLE_EQ(mean(film, "beauty", whole(film), 0), 1.0);
+  EXPECT_NEAR(mean(on.film, "beauty", whole(film), 0), 2.0, 0.05) << "1 + a + a^2 ... to depth 6";
+  EXPECT_EQ(ended.counts.ended[SUN_ENDED_LIGHT], ended.counts.paths);
 }
 
 // The sampler makes no difference to what is expected; neither does the seed.

@@ -2,6 +2,8 @@
 // One film hash, whatever the ways: how the work is cut, ordered, laid out or interrupted never changes a bit.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "support/render.h"
 #include "support/scenes.h"
 
@@ -53,6 +55,7 @@ TEST(Bits, TheSceneShowsWhatItIsMadeOf) {
   const FlatScene &flat = scene().flat(Layout::binary);
   EXPECT_TRUE(flat.has_passable && flat.has_specular && flat.has_textures);
   EXPECT_GT(flat.instances.size(), 1u);
+  EXPECT_GT(flat.fragments.size(), 2u) << "no triangle is in pieces";
   bool mirrored = false, identity = false;
   for (const kernel::Instance &instance : flat.instances) {
     mirrored = mirrored || (instance.flags & SUN_INSTANCE_MIRRORED);
@@ -189,11 +192,12 @@ TEST(Bits, CropsAreWindowsOfTheWhole) {
 }
 
 TEST(Bits, BouncesSumToTheBeautyBinByBin) {
-  for (const char *integrator : {"path", "pure"}) {
+  for (const char *integrator : {"path", "pure", "hybrid"}) {
     Scene without = everything();
     if (std::string(integrator) == "pure") without.lights.clear();
     RenderSettings s = settings();
     s.integrator = integrator;
+    if (std::string(integrator) == "hybrid") s.light_samples = 3;
     const Film film = render(Case(std::move(without)), s, samples).film;
     std::vector<std::int64_t> sum(film.layers[0].values.size());
     for (const FilmLayer &layer : film.layers)
@@ -202,6 +206,42 @@ TEST(Bits, BouncesSumToTheBeautyBinByBin) {
     for (std::size_t i = 0; i < sum.size(); i++)
       ASSERT_EQ(sum[i], film.find("beauty.even")->values[i] + film.find("beauty.odd")->values[i]) << integrator << ", value " << i;
   }
+}
+
+// What single integrators add: several shadow rays a vertex, a fixed chance to end, directions without a look at the bsdf.
+TEST(Bits, WaysOfEveryIntegrator) {
+  Scene lit = everything(), unlit = lit;
+  unlit.lights.clear();
+  const Case lit_case(lit), unlit_case(unlit);
+  std::vector<std::pair<const Case *, RenderSettings>> kinds(3, {&lit_case, settings()});
+  kinds[0].second.integrator = "hybrid";
+  kinds[0].second.light_samples = 3;
+  kinds[0].second.absorption = 0.2f;
+  kinds[1] = {&unlit_case, kinds[0].second};
+  kinds[1].second.nee_first = true;
+  kinds[2].first = &unlit_case;
+  kinds[2].second.integrator = "pure";
+  kinds[2].second.sampling = Sampling::uniform;
+  std::vector<std::string> seen;
+  for (const auto &[made, s] : kinds) {
+    const auto expected = hashes(render(*made, s, samples).film);
+    Ways one, sixteen, columns, small;
+    one.lanes = 1;
+    one.layout = Layout::binary;
+    sixteen.lanes = 16;
+    sixteen.layout = Layout::wide16;
+    sixteen.work_group = 16;
+    columns.columns = true;
+    columns.lanes = 1;
+    columns.chunk = 64;
+    small.pool = 48;
+    for (const Ways &ways : {one, sixteen, columns, small}) EXPECT_EQ(hashes(render(*made, s, samples, ways).film), expected) << s.integrator;
+    Film halves = render(*made, s, {2, 4}).film;
+    add_film(halves, render(*made, s, {0, 2}).film);
+    EXPECT_EQ(hashes(halves), expected) << s.integrator;
+    seen.push_back(expected.at("film"));
+  }
+  EXPECT_EQ(std::set<std::string>(seen.begin(), seen.end()).size(), 3u);
 }
 
 TEST(Bits, LayersDoNotChangeTheBeauty) {

@@ -380,6 +380,46 @@ TEST(Oracle, LayersOfTheFirstHit) {
   EXPECT_GT(mean(film, "material_id", left, 0), 0);
 }
 
+// Colours of vertices multiply the base colour and the alpha, in a scene that has no texture too, and what unlit surfaces show.
+TEST(Oracle, ColoursOfVerticesWithoutTextures) {
+  for (const bool unlit : {false, true}) {
+    Scene scene;
+    Material material = matt({0.5f, 1, 1});
+    material.unlit = unlit;
+    Primitive coloured = quad({0, 0, 0}, {9, 0, 0}, {0, 9, 0});
+    coloured.colors.assign(coloured.positions.size(), {0.8f, 0.25f, 0.5f, 1});
+    add(scene, coloured, material);
+    set_sky(scene, {1, 1, 1});
+    look_flat(scene, {0, 0, 5}, {0, 0, 0}, 1);
+    const Case made(std::move(scene));
+    EXPECT_TRUE(made.flat(Layout::binary).texture_refs.empty());
+    Ways trimmed;
+    trimmed.trimmed = true;
+    const std::vector<Film> films = render_seeds(made, sharp(8, 8, 1), 64, 16, trimmed);
+    EXPECT_EQ(differs(films, "beauty", whole(films[0]), {0.4f, 0.25f, 0.5f}), "") << (unlit ? "unlit" : "lit");
+  }
+}
+
+// Objects are the scene's instances, whether their mesh is baked with others (used once) or kept (used often).
+TEST(Oracle, ObjectsAreTheScenesInstances) {
+  Scene scene;
+  add(scene, quad({-3, 0, 0}, {1, 0, 0}, {0, 9, 0}), matt({1, 1, 1}));
+  add(scene, quad({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), matt({1, 1, 1}));
+  const int often = add(scene, sphere({2, 0, 0}, 1.5f, 200), matt({1, 1, 1}));
+  place(scene, often, scaled({1, 1, 1}, {20, 0, 0}));
+  look_flat(scene, {0, 0, 5}, {0, 0, 0}, 4);
+  set_sky(scene, {1, 1, 1});
+  RenderSettings s = sharp(8, 8, 0);
+  s.layers.object = true;
+  Case made(std::move(scene));
+  ASSERT_EQ(made.flat(Layout::binary).instances.size(), 3u) << "two kept, and one for what is baked";
+  const Film film = render(made, s, {0, 1}).film;
+  EXPECT_EQ(mean(film, "object_id", {0, 0, 2, 8}, 0), 1);
+  EXPECT_EQ(mean(film, "object_id", {2, 0, 4, 8}, 0), 2);
+  EXPECT_EQ(mean(film, "object_id", {5, 3, 7, 5}, 0), 3);
+  EXPECT_EQ(mean(film, "object_id", {7, 0, 8, 1}, 0), 0);
+}
+
 TEST(Oracle, TransparentBackground) {
   Scene scene;
   add(scene, quad({-1, 0, 0}, {1, 0, 0}, {0, 9, 0}), matt({0.5f, 0.5f, 0.5f}));

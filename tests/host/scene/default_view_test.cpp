@@ -141,7 +141,7 @@ TEST(LookCamera, LooksAndRefusesWhatHasNoDirection) {
 TEST(AddDefaults, GivesASkyOnlyWhereNothingEmits) {
   const auto notes = [](Scene scene) {
     Notices notices;
-    add_defaults(scene, 1, "file", notices);
+    add_defaults(scene, 1, "file", true, notices);
     for (const Notice &notice : notices.all()) EXPECT_EQ(notice.kind, Notice::Kind::note);
     EXPECT_EQ(scene.cameras.size(), 1u);
     return std::pair(scene.environment.kind, notices.all().size());

@@ -116,7 +116,7 @@ TEST_F(FilmAdd, CountsWhatItCannotTake) {
 TEST_F(FilmAdd, LayersTakeTheSameRounding) {
   for (uint sample = 0; sample < 1000; sample++) {
     const float x = 0.1f + unit_of_hash(hash2(sample, 5));
-    for (uint layer = 0; layer < 2; layer++) film_add(&view, layer, 3, hash3(0, 3, 0), sample, SUN_FILM_KEY_DIRECT(1), x, x, x);
+    for (uint layer = 0; layer < 2; layer++) film_add(&view, layer, 3, hash3(0, 3, 0), sample, SUN_FILM_KEY_DIRECT(1, 0u), x, x, x);
   }
   for (uint channel = 0; channel < 3; channel++)
     for (uint bin = 0; bin < 2; bin++) EXPECT_EQ(at(0, 3, channel, bin), at(1, 3, channel, bin));
