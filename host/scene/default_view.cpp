@@ -49,7 +49,7 @@ struct Direction {
   double weight;             // of two views that show about the same, the one that people expect
 };
 
-// Three-quarter views all round, thirty degrees off the axes and twenty up; straight on; and from above. Things face +z by custom [glTF20, 3.3], and are
+// Three-quarter views all round, thirty degrees off the axes and twenty up; straight on; and from above. Things face +z in glTF, and are
 // shown from there or from the right of it unless another side shows half as much again: a box that is open at the back.
 std::vector<Direction> directions() {
   std::vector<Direction> list;
