@@ -106,6 +106,7 @@ class Maker {
   }
   void triangle(uint a, uint b, uint c) {
     scene.triangle_ids.push_back(uint(scene.triangles.size()));
+    scene.triangle_object.push_back(1);
     scene.triangles.push_back({{a, b, c}, 0});
   }
   std::uint32_t count_ = 0;
@@ -149,6 +150,7 @@ FlatScene make_big_scene() {
   FlatScene scene = std::move(make.scene);
   scene.meshes.push_back({0, uint(scene.triangles.size())});
   scene.instance_mesh.push_back(0);
+  scene.instance_object.push_back(0);
   kernel::Instance instance{};
   for (int axis = 0; axis < 3; axis++) {
     instance.to_world[5 * axis] = instance.to_object[5 * axis] = 1.0f;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render_options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -116,19 +117,27 @@ std::vector<float> parse_numbers(const std::string &flag, const std::string &tex
   return values;
 }
 
+// Sample numbers go up to 2^32; several shadow rays a vertex take as many points of their sequence for each.
+static SampleRange checked(const RenderOptions &o, SampleRange range) {
+  const long long rays = std::clamp(o.light_samples.value_or(1), 1ll, static_cast<long long>(SUN_MOST_LIGHT_SAMPLES));
+  if (range.last > (std::uint64_t(1) << 32) / static_cast<std::uint64_t>(rays))
+    throw UsageError("--light-samples " + std::to_string(rays), "sample numbers times shadow rays end at 2^32");
+  return range;
+}
+
 SampleRange parse_samples(const RenderOptions &o) {
   if (o.samples.empty()) {
     const unsigned long long open_end = o.seconds || o.error ? 1ull << 20 : 64;
     const unsigned long long spp = o.spp.value_or(open_end);
     if (spp == 0 || spp > (1ull << 32)) throw UsageError("--spp " + std::to_string(spp), "is not from 1 to 2^32");
-    return {0, spp};
+    return checked(o, {0, spp});
   }
   if (o.spp) throw UsageError("--samples", "cannot be given beside --spp");
   const auto parts = split(o.samples, ':');
   if (parts.size() != 2) throw UsageError("--samples " + printable(o.samples), "is not A:B");
   const SampleRange range{parse<std::uint64_t>("--samples", parts[0], "a sample number"), parse<std::uint64_t>("--samples", parts[1], "a sample number")};
   if (range.first >= range.last || range.last > (std::uint64_t(1) << 32)) throw UsageError("--samples " + printable(o.samples), "holds no sample, or ends beyond 2^32");
-  return range;
+  return checked(o, range);
 }
 
 // What single integrators take, refused elsewhere.

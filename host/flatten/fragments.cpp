@@ -20,7 +20,7 @@ using Point = std::array<double, 3>;
 
 constexpr int levels = 20;                   // planes stand at multiples of 2^-20 of the grid
 constexpr double largest_coordinate = 1e18;  // beyond, areas overflow
-constexpr double most_splits = 1e6;          // of one triangle
+constexpr double most_splits = 4096;         // of one triangle: a ray along its plane may ask all its pieces
 constexpr uint chunk = 4096;                 // triangles a task takes
 
 struct Box {
@@ -165,7 +165,7 @@ std::vector<Fragment> fragments_of(const FlatScene &scene, const MeshRange &mesh
       bounds.include(p);
     }
   const Grid grid{{bounds.lower[0], bounds.lower[1], bounds.lower[2]}, bounds.longest()};
-  if (!(grid.size > 0)) return {};
+  if (!(grid.size > 1e-9)) return {};  // products of smaller coordinates have no remainders to tell
 
   std::vector<float> priorities(mesh.triangle_count);
   const uint chunks = (mesh.triangle_count + chunk - 1) / chunk;

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "pipeline/settings.h"
+#include "shared/frame.h"
 
 namespace sunstone {
 
@@ -36,6 +37,18 @@ void check_flag(const Plan &plan, const std::string &flag) {
   for (const Plan &other : integrators())
     if (std::ranges::find(other.takes, flag) != other.takes.end()) takers += (takers.empty() ? "" : " or ") + ("--integrator " + other.name);
   throw UsageError(flag, "means nothing to --integrator " + plan.name, "it belongs to " + takers);
+}
+
+void check_settings(const Plan &plan, const RenderSettings &settings) {
+  const RenderSettings plain;
+  if (settings.end_on_light) check_flag(plan, "--end-on-light");
+  if (settings.sampling != plain.sampling) check_flag(plan, "--sampling");
+  if (settings.light_samples != plain.light_samples) check_flag(plan, "--light-samples");
+  if (settings.nee_first) check_flag(plan, "--nee");
+  if (settings.absorption != plain.absorption) check_flag(plan, "--absorption");
+  if (settings.double_count) check_flag(plan, "--double-count");
+  if (settings.light_samples < 1 || settings.light_samples > SUN_MOST_LIGHT_SAMPLES)
+    throw UsageError("--light-samples", "is from 1 to " + std::to_string(SUN_MOST_LIGHT_SAMPLES));
 }
 
 const Plan &integrator(const std::string &name) {

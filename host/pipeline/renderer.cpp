@@ -34,7 +34,7 @@ std::vector<Tile> split(const RenderSettings &s, std::size_t bytes_a_pixel, std:
 unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths, unsigned light_samples) {
   unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : 1u << 14;  // on CPUs the pool stays in the caches
   constexpr unsigned most_shadow_rays = 1u << 22;  // 256 MiB of them
-  if (!tuning.pool) pool = std::min(pool, most_shadow_rays / light_samples);
+  if (!tuning.pool) pool = static_cast<unsigned>(std::min<std::size_t>(pool, std::min<std::size_t>(most_shadow_rays, info.max_allocation / sizeof(kernel::ShadowRay)) / light_samples));
   if (!tuning.pool && paths < pool) pool = static_cast<unsigned>(std::max<std::uint64_t>(paths, 16));
   return std::max(16u, (pool + 15) / 16 * 16);
 }
@@ -98,6 +98,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
     : state_(std::make_unique<State>(device, programs, integrator(settings.integrator), settings)) {
   State &s = *state_;
   check_plan(s.plan);
+  check_settings(s.plan, settings);
   s.film.picture_width = settings.width;
   s.film.picture_height = settings.height;
   s.film.x0 = settings.x0;
@@ -318,7 +319,13 @@ void StageProbe::restore(const StageState &s) {
 std::size_t StageProbe::items(Stage stage) const {
   const std::vector<kernel::uint> counts = state_->render.pool->counts.download();
   if (stage == Stage::gather_paths) return state_->render.pool->slots;
-  return counts[stage == Stage::occlude ? SUN_COUNT_SHADOW : stage == Stage::generate ? SUN_COUNT_REFILL : SUN_COUNT_LIVE];
+  if (stage == Stage::occlude) {  // every ray of the slots that have any
+    const std::vector<kernel::uint> queue = state_->render.pool->shadow_queue.download(), status = state_->render.pool->status.download();
+    std::size_t rays = 0;
+    for (std::size_t i = 0; i < counts[SUN_COUNT_SHADOW]; i++) rays += (status[queue[i]] & SUN_STATUS_SHADOWS) >> SUN_STATUS_SHADOWS_SHIFT;
+    return rays;
+  }
+  return counts[ stage == Stage::generate ? SUN_COUNT_REFILL : SUN_COUNT_LIVE];
 }
 
 const Film &Renderer::film() const { return state_->film; }
