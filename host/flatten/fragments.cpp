@@ -100,7 +100,6 @@ Fragment fragment_of(uint triangle, const Box &piece, const Box &whole) {
   Fragment fragment{};
   fragment.primitive = triangle;
   const double margin = whole.longest() * double(SUN_FRAGMENT_MARGIN);
-  fragment.least_area = float(whole.longest() * whole.longest() * double(SUN_FRAGMENT_AREA));
   for (int axis = 0; axis < 3; axis++) {
     const float lower = std::nextafter(float(piece.lower[axis] - margin), -INFINITY), upper = std::nextafter(float(piece.upper[axis] + margin), INFINITY);
     fragment.lower[axis] = std::max(lower, float(whole.lower[axis]));
@@ -202,6 +201,7 @@ void split_long_triangles(FlatScene &scene, const SplitOptions &options) {
     scene.fragments.insert(scene.fragments.end(), made.begin(), made.end());
     if (scene.fragments.size() > SUN_ID_PRIMITIVE) throw Error{"flatten", "more than 2^29 pieces of triangles", "use a simpler scene"};
   }
+  scene.fragments[0].count = uint(scene.fragments.size() - 1);
   scene.fragments.push_back(none);
 }
 

@@ -23,8 +23,10 @@ float area(const Node &node) {
   return x * y + y * z + z * x;
 }
 
+uint triangle_of(const FlatScene &scene, uint item) { return item & SUN_ID_FRAGMENT ? scene.fragments[item & SUN_ID_PRIMITIVE].primitive : item; }
+
 std::array<float, 9> corners(const FlatScene &scene, uint item) {
-  const uint triangle = item & SUN_ID_FRAGMENT ? scene.fragments[item & SUN_ID_PRIMITIVE].primitive : item;
+  const uint triangle = triangle_of(scene, item);
   std::array<float, 9> v;
   for (int corner = 0; corner < 3; corner++)
     std::copy_n(scene.vertices[scene.triangles[triangle].vertex[corner]].position, 3, v.begin() + 3 * corner);
@@ -32,10 +34,7 @@ std::array<float, 9> corners(const FlatScene &scene, uint item) {
 }
 
 // As leaves have it.
-uint id_of(const FlatScene &scene, uint item) {
-  if (!(item & SUN_ID_FRAGMENT)) return scene.triangle_ids[item];
-  return item | (scene.triangle_ids[scene.fragments[item & SUN_ID_PRIMITIVE].primitive] & ~SUN_ID_PRIMITIVE);
-}
+uint id_of(const FlatScene &scene, uint item) { return scene.triangle_ids[triangle_of(scene, item)] | (item & SUN_ID_FRAGMENT); }
 
 template <class T>
 std::vector<std::byte> bytes_of(const std::vector<T> &values) {

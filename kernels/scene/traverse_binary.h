@@ -48,7 +48,7 @@ SUN_INLINE uint pop_node(const ulong *stack, int *size, float limit) {
   return SUN_NONE;
 }
 
-// The mesh below `root`: takes the nearest hit that counts. With `any` the first that is found; true if there is one.
+// The mesh below `root`: takes the nearest hit that counts. With `any` the first that counts; true if there is one.
 SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay *ray, const Place *place, Search *search, int any) {
   ulong stack[SUN_TRACE_STACK];
   int size = 0;
@@ -61,11 +61,11 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
     }
     for (uint i = first; i < first + count; i++) {
       const SUN_GLOBAL LeafTriangle *leaf = &scene->leaves[i];
-      Pierced pierced;
+      Pierced p;
       float t, u, v;
       uint primitive;
-      if (!pierce(leaf, ray, &pierced)) continue;
-      if (!counts(leaf, scene->fragments, ray, place, search, &pierced, 1, &t, &u, &v, &primitive)) continue;
+      if (!pierce(leaf, ray, &p)) continue;
+      if (!counts(leaf, scene->fragments, ray, place, search, &p, 1, &t, &u, &v, &primitive)) continue;
       if (any) return 1;
       take_hit(search, place, t, u, v, primitive);
     }

@@ -169,7 +169,7 @@ SUN_INLINE uint pop_child(const ulong *stack, int *size, float limit) {
   return SUN_NONE;
 }
 
-// The mesh below `root`: takes the nearest hit that counts. With `any` the first that is found; true if there is one.
+// The mesh below `root`: takes the nearest hit that counts. With `any_one` the first that counts; true if there is one.
 SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay *ray, const Place *place, Search *search, int any_one) {
   ulong stack[SUN_TRACE_STACK];
   int size = 0;

@@ -4,7 +4,7 @@
 //
 // A hit of triangle p in instance i counts only if, in this order,
 //   1. the watertight edge test [Woop13] passes,
-//   2. the ray passes the triangle's own box; t is clamped into that interval; where the triangle is in pieces, the box of one of them holds t,
+//   2. the ray passes the triangle's own box; t is clamped into that interval,
 //   3. the ray passes the instance's world box; t is clamped into that as well,
 //   4. the side and the kind of the triangle are wanted,
 //   5. (t, i, p) lies strictly between what the ray passed and the best hit so far.
@@ -25,6 +25,13 @@
 #undef SUN_SOON
 #define SUN_SOON(place) __builtin_prefetch(place)
 #endif
+#endif
+
+// What few rays come to, in kernels for CPUs: kept out of the loops, whose registers it would take.
+#define SUN_RARE SUN_INLINE
+#if !defined(__cplusplus) && SUN_LAYOUT != SUN_LAYOUT_BINARY
+#undef SUN_RARE
+#define SUN_RARE static __attribute__((noinline))
 #endif
 
 SUN_NAMESPACE_BEGIN
@@ -91,8 +98,9 @@ typedef struct Place {
 SUN_INLINE float box_limit(const Place *place, const Search *search) { return search->best_t < place->world.far ? search->best_t : SUN_INFINITY; }
 
 typedef struct Pierced {
-  tri_float u, v, w;  // scaled barycentrics of corners 0, 1, 2: signed areas in the sheared space
-  tri_float az, bz, cz;
+  tri_float u, v, w;     // scaled barycentrics of corners 0, 1, 2: twice the signed areas in the sheared space
+  tri_float az, bz, cz;  // the corners along its third axis
+  tri_int edge;          // one of u, v and w is 0
 } Pierced;
 
 // Twice the signed area a * b - c * d. Where the difference of the rounded products is not 0 its sign is right; where it is 0, the exact remainders
@@ -100,12 +108,7 @@ typedef struct Pierced {
 #define TRI_AREA(a, b, c, d) ((a) * (b) - (c) * (d))
 #define TRI_REMAINDER(a, b, c, d) (fma((a), (b), -((a) * (b))) - fma((c), (d), -((c) * (d))))
 
-SUN_INLINE tri_int same_side(tri_float u, tri_float v, tri_float w) {
-  const tri_float low = SUN_LESSER(u, v), high = SUN_GREATER(u, v);
-  return ((low >= 0.0f) & (w >= 0.0f)) | ((high <= 0.0f) & (w <= 0.0f));
-}
-
-// 1: does the ray's line pass the triangle, on its edges included?
+// 1, but for the zeros, which pass as either sign: does the ray's line pass the triangle, on its edges included?
 SUN_INLINE tri_int pierce(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *ray, Pierced *p) {
   const int kx = ray->axis[0], ky = ray->axis[1], kz = ray->axis[2];
   const tri_float ox = (tri_float)(ray->origin[0]), oy = (tri_float)(ray->origin[1]), oz = (tri_float)(ray->origin[2]);
@@ -114,47 +117,26 @@ SUN_INLINE tri_int pierce(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *r
   const tri_float ax = fma(sx, az, TRI_LOAD(leaf, kx) - ox), ay = fma(sy, az, TRI_LOAD(leaf, ky) - oy);
   const tri_float bx = fma(sx, bz, TRI_LOAD(leaf, 3 + kx) - ox), by = fma(sy, bz, TRI_LOAD(leaf, 3 + ky) - oy);
   const tri_float cx = fma(sx, cz, TRI_LOAD(leaf, 6 + kx) - ox), cy = fma(sy, cz, TRI_LOAD(leaf, 6 + ky) - oy);
-  tri_float u = TRI_AREA(cx, by, cy, bx), v = TRI_AREA(ax, cy, ay, cx), w = TRI_AREA(bx, ay, by, ax);
-  tri_int pierced = same_side(u, v, w);
-  if (TRI_ANY(pierced)) {  // zeros pass as either sign: only those that are through need the exact one
-    const tri_int zero = pierced & ((u == 0.0f) | (v == 0.0f) | (w == 0.0f));
-    if (TRI_ANY(zero)) {
-      u = u == 0.0f ? TRI_REMAINDER(cx, by, cy, bx) : u;
-      v = v == 0.0f ? TRI_REMAINDER(ax, cy, ay, cx) : v;
-      w = w == 0.0f ? TRI_REMAINDER(bx, ay, by, ax) : w;
-      pierced = pierced & same_side(u, v, w);
-    }
-  }
-  p->u = u;
-  p->v = v;
-  p->w = w;
+  p->u = TRI_AREA(cx, by, cy, bx);
+  p->v = TRI_AREA(ax, cy, ay, cx);
+  p->w = TRI_AREA(bx, ay, by, ax);
+  const tri_float low_uv = SUN_LESSER(p->u, p->v), high_uv = SUN_GREATER(p->u, p->v);
+  const tri_float low = SUN_LESSER(low_uv, p->w), high = SUN_GREATER(high_uv, p->w);
   p->az = az;
   p->bz = bz;
   p->cz = cz;
-  return pierced;
-}
-
-// One axis of 2: narrows [enter, leave] to the slab of the triangle's own box.
-SUN_INLINE void narrow_to_box(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *ray, int axis, tri_float *enter, tri_float *leave) {
-  const tri_float a = TRI_LOAD(leaf, axis), b = TRI_LOAD(leaf, 3 + axis), c = TRI_LOAD(leaf, 6 + axis);
-  const tri_float ab_lower = SUN_LESSER(a, b), ab_upper = SUN_GREATER(a, b);
-  const tri_float lower = SUN_LESSER(ab_lower, c), upper = SUN_GREATER(ab_upper, c);
-  const tri_float reciprocal = (tri_float)(ray->reciprocal[axis]);
-  const tri_float near = fma(ray->negative[axis] ? upper : lower, reciprocal, (tri_float)(ray->near_offset[axis]));
-  const tri_float far = fma(ray->negative[axis] ? lower : upper, reciprocal, (tri_float)(ray->far_offset[axis]));
-  *enter = near > *enter ? near : *enter;
-  *leave = far < *leave ? far : *leave;
+  p->edge = (low == 0.0f) | (high == 0.0f);
+  return (low >= 0.0f) | (high <= 0.0f);
 }
 
 // The distance at which a ray passes a triangle, from areas with their remainders, clamped into the triangle's own box. `lost` where even those areas
 // drown in rounding: such a triangle is seen from its edge.
 SUN_INLINE float exact_distance(const SUN_GLOBAL TraceLeaf *leaf, int lane, const PreparedRay *ray, int *lost) {
-  float v[9], x[3], y[3], z[3], reach_x = 0.0f, reach_y = 0.0f;
-  for (int k = 0; k < 9; k++) v[k] = TRI_CORNER(leaf, k, lane);
+  float x[3], y[3], z[3], reach_x = 0.0f, reach_y = 0.0f;
   for (int corner = 0; corner < 3; corner++) {
-    z[corner] = v[3 * corner + ray->axis[2]] - ray->origin[2];
-    x[corner] = fma(-ray->shear[0], z[corner], v[3 * corner + ray->axis[0]] - ray->origin[0]);
-    y[corner] = fma(-ray->shear[1], z[corner], v[3 * corner + ray->axis[1]] - ray->origin[1]);
+    z[corner] = TRI_CORNER(leaf, 3 * corner + ray->axis[2], lane) - ray->origin[2];
+    x[corner] = fma(-ray->shear[0], z[corner], TRI_CORNER(leaf, 3 * corner + ray->axis[0], lane) - ray->origin[0]);
+    y[corner] = fma(-ray->shear[1], z[corner], TRI_CORNER(leaf, 3 * corner + ray->axis[1], lane) - ray->origin[1]);
     const float ax = fabs(x[corner]), ay = fabs(y[corner]);
     reach_x = SUN_GREATER(reach_x, ax);
     reach_y = SUN_GREATER(reach_y, ay);
@@ -168,9 +150,10 @@ SUN_INLINE float exact_distance(const SUN_GLOBAL TraceLeaf *leaf, int lane, cons
   float t = fma(a * inverse, z[0], fma(b * inverse, z[1], c * inverse * z[2])) * ray->shear[2];
   float lower[3], upper[3];
   for (int axis = 0; axis < 3; axis++) {
-    const float ab_lower = SUN_LESSER(v[axis], v[3 + axis]), ab_upper = SUN_GREATER(v[axis], v[3 + axis]);
-    lower[axis] = SUN_LESSER(ab_lower, v[6 + axis]);
-    upper[axis] = SUN_GREATER(ab_upper, v[6 + axis]);
+    const float va = TRI_CORNER(leaf, axis, lane), vb = TRI_CORNER(leaf, 3 + axis, lane), vc = TRI_CORNER(leaf, 6 + axis, lane);
+    const float ab_lower = SUN_LESSER(va, vb), ab_upper = SUN_GREATER(va, vb);
+    lower[axis] = SUN_LESSER(ab_lower, vc);
+    upper[axis] = SUN_GREATER(ab_upper, vc);
   }
   const Interval whole = box_interval(ray, lower[0], lower[1], lower[2], upper[0], upper[1], upper[2], 0.0f);
   t = t > whole.near ? t : whole.near;
@@ -181,79 +164,120 @@ SUN_INLINE Interval fragment_interval(const SUN_GLOBAL Fragment *f, const Prepar
   return box_interval(ray, f->lower[0], f->lower[1], f->lower[2], f->upper[0], f->upper[1], f->upper[2], 0.0f);
 }
 
-// 2 for a triangle in pieces, come by way of one of them. Its t is the same whichever piece that was: the pieces that hold t are asked for the hit. The
-// ray at t is as near to a point of the triangle as the margins of slabs and pieces make up for. Where t errs by more, it is found again with more care;
-// where that is no use, it is the nearest that any piece makes of it. So some piece always holds it (docs/decisions/0002-hits.md).
-SUN_INLINE int fragment_counts(const SUN_GLOBAL TraceLeaf *leaf, int lane, const SUN_GLOBAL Fragment *fragment, const PreparedRay *ray, float det,
-                               float *t_hit) {
-  const Interval piece = fragment_interval(fragment, ray);
-  if (!(piece.near <= piece.far)) return 0;
-  if (!(fabs(det) > fragment->least_area)) {
-    int lost;
-    const float t = exact_distance(leaf, lane, ray, &lost);
-    *t_hit = t;
-    if (lost && t > 0.0f) {
-      const SUN_GLOBAL Fragment *other = fragment;
-      while ((other - 1)->primitive == fragment->primitive) other--;
-      float nearest = SUN_INFINITY;
-      for (; other->primitive == fragment->primitive; other++) {
-        const Interval inside = fragment_interval(other, ray);
-        if (!(inside.near <= inside.far)) continue;
-        const float late = t > inside.near ? t : inside.near, held = late < inside.far ? late : inside.far;
-        nearest = SUN_LESSER(held, nearest);
-      }
-      *t_hit = nearest;
-    }
+// 2 for a triangle in pieces that is seen nearly from its edge: t is found again with more care, and where that is no use, it is the nearest that any
+// piece makes of it. So some piece always holds it, as it does without this where t errs by less than the margins of slabs and pieces make up for
+// (docs/decisions/0002-hits.md).
+SUN_INLINE float grazed_distance(const SUN_GLOBAL TraceLeaf *leaf, int lane, const SUN_GLOBAL Fragment *fragments, uint primitive,
+                                 const PreparedRay *ray) {
+  int lost;
+  const float t = exact_distance(leaf, lane, ray, &lost);
+  if (!lost || !(t > 0.0f)) return t;
+  uint first = 1, end = fragments[0].count + 1;  // its pieces stand together, in the order of the triangles
+  while (first < end) {
+    const uint middle = first + (end - first) / 2;
+    if (fragments[middle].primitive < primitive)
+      first = middle + 1;
+    else
+      end = middle;
   }
-  return piece.near <= *t_hit && *t_hit <= piece.far;
+  float nearest = SUN_INFINITY;
+  for (; fragments[first].primitive == primitive; first++) {
+    const Interval inside = fragment_interval(&fragments[first], ray);
+    if (!(inside.near <= inside.far)) continue;
+    const float late = t > inside.near ? t : inside.near, held = late < inside.far ? late : inside.far;
+    nearest = SUN_LESSER(held, nearest);
+  }
+  return nearest;
 }
 
-// 2 for the lanes of `split`, whose id names a fragment; t and the primitive become those of the whole triangle.
-SUN_INLINE tri_int fragments_count(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, tri_int ok,
-                                   tri_int split, tri_float det, tri_float *t, tri_uint *primitive) {
-  int oks[TRI_COUNT];
-  float ts[TRI_COUNT], dets[TRI_COUNT];
-  uint primitives[TRI_COUNT];
-  TRI_STORE(ok, oks);
-  TRI_STORE(*t, ts);
-  TRI_STORE(det, dets);
-  TRI_STORE(*primitive, primitives);
-  for (ulong lanes = TRI_BYTES(split); lanes; lanes &= lanes - 1) {
-    const int lane = lowest_byte(lanes);
-    const SUN_GLOBAL Fragment *fragment = fragments + primitives[lane];
-    primitives[lane] = fragment->primitive;
-    if (!fragment_counts(leaf, lane, fragment, ray, dets[lane], &ts[lane])) oks[lane] = 0;
-  }
-  *t = TRI_RELOAD(ts);
-  *primitive = TRI_RELOAD(primitives);
-  return TRI_RELOAD(oks);
-}
+typedef struct Distances {
+  tri_float u, v, t, det;  // barycentrics of corners 1 and 2, the distance, and the sum of the scaled barycentrics: its sign tells the side
+  tri_float longest;       // extent of the triangle's box
+  tri_int ok;
+} Distances;
 
-// 2 to 5, for lanes that pierce() let through. t, u and v (of corners 1 and 2) and the primitive mean something where the result is true.
-SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, const Place *place,
-                          const Search *search, const Pierced *p, tri_int pierced, tri_float *t_hit, tri_float *u_hit, tri_float *v_hit,
-                          tri_uint *primitive_hit) {
-  const tri_float det = p->u + p->v + p->w;
-  const tri_float inverse = 1.0f / det;
-  const tri_float u = p->v * inverse, v = p->w * inverse;
-  tri_float t = fma(p->u * inverse, p->az, fma(u, p->bz, v * p->cz)) * ray->shear[2];
-  tri_int ok = pierced & (det != 0.0f) & (fabs(t) <= SUN_LARGEST);  // NaN fails
+// 2, for lanes that pierce() let through.
+SUN_INLINE Distances distances_of(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *ray, const Pierced *p, tri_int pierced) {
+  Distances d;
+  d.det = p->u + p->v + p->w;
+  const tri_float inverse = 1.0f / d.det;
+  d.u = p->v * inverse;
+  d.v = p->w * inverse;
+  d.t = fma(p->u * inverse, p->az, fma(d.u, p->bz, d.v * p->cz)) * ray->shear[2];
+  d.ok = pierced & (d.det != 0.0f) & (fabs(d.t) <= SUN_LARGEST);  // NaN fails
   tri_float enter = (tri_float)(0.0f), leave = (tri_float)(SUN_INFINITY);
-  narrow_to_box(leaf, ray, 0, &enter, &leave);
-  narrow_to_box(leaf, ray, 1, &enter, &leave);
-  narrow_to_box(leaf, ray, 2, &enter, &leave);
-  ok = ok & (enter <= leave);
-  t = t < enter ? enter : t;
-  t = t > leave ? leave : t;
+  d.longest = (tri_float)(0.0f);
+  for (int axis = 0; axis < 3; axis++) {
+    const tri_float a = TRI_LOAD(leaf, axis), b = TRI_LOAD(leaf, 3 + axis), c = TRI_LOAD(leaf, 6 + axis);
+    const tri_float ab_lower = SUN_LESSER(a, b), ab_upper = SUN_GREATER(a, b);
+    const tri_float lower = SUN_LESSER(ab_lower, c), upper = SUN_GREATER(ab_upper, c), extent = upper - lower;
+    const tri_float reciprocal = (tri_float)(ray->reciprocal[axis]);
+    const tri_float near_offset = (tri_float)(ray->near_offset[axis]), far_offset = (tri_float)(ray->far_offset[axis]);
+    // The nearer of both planes, whichever way the ray goes: no choice by axis.
+    const tri_float near_lower = fma(lower, reciprocal, near_offset), near_upper = fma(upper, reciprocal, near_offset);
+    const tri_float far_lower = fma(lower, reciprocal, far_offset), far_upper = fma(upper, reciprocal, far_offset);
+    const tri_float near = SUN_LESSER(near_lower, near_upper), far = SUN_GREATER(far_lower, far_upper);
+    enter = SUN_GREATER(near, enter);
+    leave = SUN_LESSER(far, leave);
+    d.longest = SUN_GREATER(extent, d.longest);
+  }
+  d.ok = d.ok & (enter <= leave);
+  d.t = d.t < enter ? enter : d.t;
+  d.t = d.t > leave ? leave : d.t;
+  return d;
+}
+
+// The lanes of `careful` again: edges get the exact sign of their zeros, triangles in pieces that are seen nearly from their edge their t.
+SUN_RARE void take_care(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, tri_int careful, Pierced *p,
+                        Distances *d) {
+  const int kx = ray->axis[0], ky = ray->axis[1];
+  const tri_float ox = (tri_float)(ray->origin[0]), oy = (tri_float)(ray->origin[1]);
+  const tri_float sx = (tri_float)(-ray->shear[0]), sy = (tri_float)(-ray->shear[1]);
+  const tri_float ax = fma(sx, p->az, TRI_LOAD(leaf, kx) - ox), ay = fma(sy, p->az, TRI_LOAD(leaf, ky) - oy);
+  const tri_float bx = fma(sx, p->bz, TRI_LOAD(leaf, 3 + kx) - ox), by = fma(sy, p->bz, TRI_LOAD(leaf, 3 + ky) - oy);
+  const tri_float cx = fma(sx, p->cz, TRI_LOAD(leaf, 6 + kx) - ox), cy = fma(sy, p->cz, TRI_LOAD(leaf, 6 + ky) - oy);
+  p->u = p->u == 0.0f ? TRI_REMAINDER(cx, by, cy, bx) : p->u;
+  p->v = p->v == 0.0f ? TRI_REMAINDER(ax, cy, ay, cx) : p->v;
+  p->w = p->w == 0.0f ? TRI_REMAINDER(bx, ay, by, ax) : p->w;
+  const tri_int same_side = ((p->u >= 0.0f) & (p->v >= 0.0f) & (p->w >= 0.0f)) | ((p->u <= 0.0f) & (p->v <= 0.0f) & (p->w <= 0.0f));
+  *d = distances_of(leaf, ray, p, d->ok & same_side);
   const tri_uint id = TRI_LOAD_ID(leaf);
-  tri_uint primitive = id & SUN_ID_PRIMITIVE;
-  const tri_int split = ok & ((id & SUN_ID_FRAGMENT) != 0);
-  if (TRI_ANY(split)) ok = fragments_count(leaf, fragments, ray, ok, split, det, &t, &primitive);
+  const tri_int grazed = careful & d->ok & ((id & SUN_ID_FRAGMENT) != 0) & (fabs(d->det) <= SUN_FRAGMENT_AREA * (d->longest * d->longest));
+  float ts[TRI_COUNT];
+  uint ids[TRI_COUNT];
+  TRI_STORE(d->t, ts);
+  TRI_STORE(id, ids);
+  for (ulong lanes = TRI_BYTES(grazed); lanes; lanes &= lanes - 1) {
+    const int lane = lowest_byte(lanes);
+    ts[lane] = grazed_distance(leaf, lane, fragments, ids[lane] & SUN_ID_PRIMITIVE, ray);
+  }
+  d->t = TRI_RELOAD(ts);
+}
+
+// The rest of 1, and 2 to 5, for lanes that pierce() let through. t, u and v (of corners 1 and 2) and the primitive mean something where the result is
+// true.
+SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, const Place *place,
+                          const Search *search, Pierced *p, tri_int pierced, tri_float *t_hit, tri_float *u_hit, tri_float *v_hit,
+                          tri_uint *primitive_hit) {
+  Distances d = distances_of(leaf, ray, p, pierced);
+  const tri_uint id = TRI_LOAD_ID(leaf);
+  const tri_uint primitive = id & SUN_ID_PRIMITIVE;
+  const tri_int in_pieces = (id & SUN_ID_FRAGMENT) != 0;
+  const tri_int careful = pierced & (p->edge | (in_pieces & (fabs(d.det) <= SUN_FRAGMENT_AREA * (d.longest * d.longest))));
+  if (TRI_ANY(careful)) {
+    Pierced again = *p;
+    Distances found;
+    found.ok = pierced;
+    take_care(leaf, fragments, ray, careful, &again, &found);
+    d = found;
+  }
+  tri_int ok = d.ok;
+  tri_float t = d.t;
   t = t < place->world.near ? (tri_float)(place->world.near) : t;
   t = t > place->world.far ? (tri_float)(place->world.far) : t;
 
   // Seen from behind: clockwise in the mesh's own space, so a mirrored instance's front stays its front.
-  ok = ok & !(((id & SUN_ID_SINGLE_SIDED) != 0) & (det < 0.0f));
+  ok = ok & !(((id & SUN_ID_SINGLE_SIDED) != 0) & (d.det < 0.0f));
   if (search->want == SUN_WANT_OPAQUE) ok = ok & ((id & SUN_ID_PASSABLE) == 0);
   if (search->want == SUN_WANT_PASSABLE) ok = ok & ((id & SUN_ID_PASSABLE) != 0);
 
@@ -263,8 +287,8 @@ SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fra
   ok = ok & ((t > search->passed_t) | ((t == search->passed_t) & (primitive >= place->first_primitive)));
   ok = ok & ((t < search->best_t) | ((t == search->best_t) & (primitive < end_primitive)));
   *t_hit = t;
-  *u_hit = u;
-  *v_hit = v;
+  *u_hit = d.u;
+  *v_hit = d.v;
   *primitive_hit = primitive;
   return ok;
 }

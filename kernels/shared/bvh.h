@@ -7,23 +7,25 @@
 
 SUN_NAMESPACE_BEGIN
 
-// Set in a triangle's id inside leaves. The rest of the id is the primitive number, below 2^29, or that of a fragment.
+// Set in a triangle's id inside leaves. The rest of the id is the primitive number, below 2^29.
 #define SUN_ID_SINGLE_SIDED 0x80000000u  // seen from behind it is passed by every ray
 #define SUN_ID_PASSABLE 0x40000000u      // alpha or smooth thin transmission: does not simply block shadow rays
-#define SUN_ID_FRAGMENT 0x20000000u
+#define SUN_ID_FRAGMENT 0x20000000u      // in pieces: stands in leaves once for each of them
 #define SUN_ID_PRIMITIVE 0x1fffffffu
 
-// A piece of a long triangle: its hits count where the box of a piece holds them. Trees hold the pieces instead of the triangle. The pieces of one
-// triangle stand together; before the first and behind the last of all there is one more, of no triangle (SUN_NONE).
+// A piece of a long triangle. Trees hold the pieces' boxes instead of the triangle's. The pieces of one triangle stand together, triangles in order;
+// before the first and behind the last of all there is one more, of no triangle (SUN_NONE).
 typedef struct Fragment {
   float lower[3];
   uint primitive;
   float upper[3];  // wider than the piece by SUN_FRAGMENT_MARGIN of the triangle's longest extent, within the triangle's own box
-  float least_area;  // triangles that a ray sees with less than this, twice their area across the ray's longest axis, need their t found with more care
+  uint count;      // in the first of all: the number of pieces; else 0
 } Fragment;
 SUN_STATIC_ASSERT(sizeof(Fragment) == 32, fragment_is_32_bytes);
 #define SUN_FRAGMENT_MARGIN 0.0009765625f  // 2^-10
-#define SUN_FRAGMENT_AREA 0.00390625f      // 2^-8: least_area over the square of the longest extent
+// A ray that sees less than this of a triangle in pieces needs its t found with more care: twice the area across the ray's third axis, over the square
+// of the longest extent.
+#define SUN_FRAGMENT_AREA 0.00390625f  // 2^-8
 
 // One node of the binary layout. A leaf has count > 0.
 typedef struct BinaryNode {

@@ -64,10 +64,9 @@ void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell
             counts(&leaf, flat.fragments.data(), &inside, &place, &search, &pierced, 1, &t, &u, &v, &primitive))
           tell(search, place, t, u, v, primitive);
       };
-      const uint id = flat.triangle_ids[k];
-      const bool whole = next == last || flat.fragments[next].primitive != k;
-      for (; next < last && flat.fragments[next].primitive == k; next++) try_leaf(next | SUN_ID_FRAGMENT | (id & ~SUN_ID_PRIMITIVE));
-      if (whole) try_leaf(id);
+      bool in_pieces = false;
+      for (; next < last && flat.fragments[next].primitive == k; next++) in_pieces = true;
+      try_leaf(flat.triangle_ids[k] | (in_pieces ? SUN_ID_FRAGMENT : 0));
     }
   }
 }

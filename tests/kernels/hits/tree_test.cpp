@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The trees: boxes contain what is below them exactly, every triangle is there exactly once, and no input makes them too deep.
+// The trees: boxes contain what is below them exactly, every triangle and every piece of one is there exactly once, and no input makes them too deep.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <set>
+#include <span>
 
 #include "base/error.h"
 #include "flatten/bvh.h"
@@ -35,11 +37,17 @@ T read(const std::vector<std::byte> &bytes, std::size_t i) {
   return value;
 }
 
+Box box_of(const kernel::Fragment &f) { return {vec3(f.lower[0], f.lower[1], f.lower[2]), vec3(f.upper[0], f.upper[1], f.upper[2])}; }
+bool contains(const Box &outer, const Box &inner) {
+  return glm::all(glm::lessThanEqual(outer.lower, inner.lower)) && glm::all(glm::greaterThanEqual(outer.upper, inner.upper));
+}
+
 // Walks a tree as the kernels do, checks every box against what is below it, and collects its leaves' ids (of triangles, or numbers of instances).
 class Walk {
  public:
   Walk(const FlatScene &scene, const Tree &tree, bool top) : scene_(scene), tree_(tree), top_(top) {}
   std::vector<uint> ids;
+  std::set<uint> held;  // fragments within the box of a leaf that has their triangle
   std::size_t deepest = 0, stack = 0;
 
   Box visit(uint reference) {
@@ -54,60 +62,86 @@ class Walk {
     const kernel::Instance &i = scene_.instances.at(number);
     return {vec3(i.lower[0], i.lower[1], i.lower[2]), vec3(i.upper[0], i.upper[1], i.upper[2])};
   }
-  Box triangle(const float *v, uint id) {
-    ids.push_back(id);
-    const kernel::Fragment *piece = id & SUN_ID_FRAGMENT ? &scene_.fragments.at(id & SUN_ID_PRIMITIVE) : nullptr;
-    const uint primitive = piece ? piece->primitive : id & SUN_ID_PRIMITIVE;
-    EXPECT_EQ(id & ~(SUN_ID_PRIMITIVE | SUN_ID_FRAGMENT), scene_.triangle_ids.at(primitive) & ~SUN_ID_PRIMITIVE);
-    const kernel::Triangle &t = scene_.triangles.at(primitive);
-    Box box;
-    for (int k = 0; k < 3; k++) {
-      EXPECT_EQ(std::memcmp(v + 3 * k, scene_.vertices[t.vertex[k]].position, 12), 0);
-      const vec3 p(v[3 * k], v[3 * k + 1], v[3 * k + 2]);
-      box.include({p, p});
+  // The items of a leaf, whose box is `own`: its union is exact where all are whole triangles. A piece's number is not in the leaf: each lane in pieces has
+  // to have some piece of its triangle within the box, and check() asks that each piece is within the box of some leaf with its triangle.
+  struct Item {
+    std::array<float, 9> v;
+    uint id;
+  };
+  void check_leaf(std::span<const Item> items, const Box &own, bool exact = true) {
+    Box whole;
+    bool pieces = false;
+    for (const Item &item : items) {
+      ids.push_back(item.id);
+      const uint primitive = item.id & SUN_ID_PRIMITIVE;
+      EXPECT_EQ(item.id & ~SUN_ID_FRAGMENT, scene_.triangle_ids.at(primitive));
+      const kernel::Triangle &t = scene_.triangles.at(primitive);
+      for (std::size_t k = 0; k < 3; k++) EXPECT_EQ(std::memcmp(&item.v[3 * k], scene_.vertices[t.vertex[k]].position, 12), 0);
+      if (item.id & SUN_ID_FRAGMENT) {
+        pieces = true;
+        std::size_t within = 0;
+        for (std::size_t f = 0; f < scene_.fragments.size(); f++) {
+          if (scene_.fragments[f].primitive != primitive) continue;
+          const Box piece = box_of(scene_.fragments[f]);
+          if (!contains(own, piece)) continue;
+          within++;
+          held.insert(uint(f));
+        }
+        EXPECT_GT(within, 0u);
+        continue;
+      }
+      Box box;
+      for (std::size_t k = 0; k < 3; k++) {
+        const vec3 p(item.v[3 * k], item.v[3 * k + 1], item.v[3 * k + 2]);
+        box.include({p, p});
+      }
+      EXPECT_TRUE(contains(own, box));
+      whole.include(box);
     }
-    if (!piece) return box;
-    const Box own{vec3(piece->lower[0], piece->lower[1], piece->lower[2]), vec3(piece->upper[0], piece->upper[1], piece->upper[2])};
-    EXPECT_TRUE(glm::all(glm::greaterThanEqual(own.lower, box.lower)) && glm::all(glm::lessThanEqual(own.upper, box.upper)));
-    return own;
+    EXPECT_TRUE(!exact || pieces || own == whole);
   }
   Box visit_binary(uint number, std::size_t depth) {
     deepest = std::max(deepest, depth);
     stack = std::max(stack, depth);
     const auto node = read<kernel::BinaryNode>(tree_.nodes, number);
-    Box box;
-    for (uint i = 0; i < node.count; i++) {
-      if (top_) {
-        box.include(instance(tree_.instance_list.at(node.first + i)));
-      } else {
-        const auto leaf = read<kernel::LeafTriangle>(tree_.leaves, node.first + i);
-        if (!std::isnan(leaf.v[0]))
-          box.include(triangle(leaf.v, leaf.id));
-        else
-          return {};
-      }
-    }
+    const Box own{vec3(node.lower[0], node.lower[1], node.lower[2]), vec3(node.upper[0], node.upper[1], node.upper[2])};
     EXPECT_LE(node.count, top_ ? 1u : 4u);
+    if (node.count && !top_) {
+      std::vector<Item> items;
+      for (uint i = 0; i < node.count; i++) {
+        const auto leaf = read<kernel::LeafTriangle>(tree_.leaves, node.first + i);
+        if (std::isnan(leaf.v[0])) return {};  // a mesh of no triangles
+        Item item{{}, leaf.id};
+        std::copy_n(leaf.v, 9, item.v.begin());
+        items.push_back(item);
+      }
+      check_leaf(items, own);
+      return own;
+    }
+    Box box;
+    for (uint i = 0; i < node.count; i++) box.include(instance(tree_.instance_list.at(node.first + i)));
     if (node.count == 0)
       for (uint child = node.first; child < node.first + 2; child++) box.include(visit_binary(child, depth + 1));
-    const Box own{vec3(node.lower[0], node.lower[1], node.lower[2]), vec3(node.upper[0], node.upper[1], node.upper[2])};
     EXPECT_TRUE(own == box);
     return own;
   }
+  // `known` is the box that the node above has; a root has none, and lies within everything.
   template <class Node>
-  Box visit_wide(uint reference, std::size_t depth, std::size_t waiting) {
+  Box visit_wide(uint reference, std::size_t depth, std::size_t waiting, const Box &known = {vec3(-INFINITY), vec3(INFINITY)}) {
     deepest = std::max(deepest, depth);
     Box box;
     if (reference & SUN_WIDE_LEAF) {
       if (top_) return instance(reference & ~SUN_WIDE_LEAF);
       const auto pack = read<kernel::WidePack>(tree_.leaves, reference & ~SUN_WIDE_LEAF);
+      std::vector<Item> items;
       for (int lane = 0; lane < SUN_PACK; lane++) {
         if (std::isnan(pack.v[0][lane])) continue;
-        float v[9];
-        for (int k = 0; k < 9; k++) v[k] = pack.v[k][lane];
-        box.include(triangle(v, pack.id[lane]));
+        Item item{{}, pack.id[lane]};
+        for (std::size_t k = 0; k < 9; k++) item.v[k] = pack.v[k][lane];
+        items.push_back(item);
       }
-      return box;
+      check_leaf(items, known, depth > 1);
+      return known;
     }
     const auto node = read<Node>(tree_.nodes, reference);
     std::size_t children = 0;
@@ -118,7 +152,7 @@ class Walk {
       const Box own{vec3(node.plane[0][slot], node.plane[2][slot], node.plane[4][slot]),
                     vec3(node.plane[1][slot], node.plane[3][slot], node.plane[5][slot])};
       if (own == Box{}) continue;
-      EXPECT_TRUE(own == visit_wide<Node>(node.child[slot], depth + 1, waiting + children - 1));
+      EXPECT_TRUE(own == visit_wide<Node>(node.child[slot], depth + 1, waiting + children - 1, own));
       box.include(own);
     }
     return box;
@@ -148,7 +182,8 @@ void check(const FlatScene &scene, Layout layout) {
     for (uint f = range.first_fragment; f < range.first_fragment + range.fragment_count; f++) {
       const uint primitive = scene.fragments[f].primitive;
       in_pieces.insert(primitive);
-      expected.insert(f | SUN_ID_FRAGMENT | (scene.triangle_ids[primitive] & ~SUN_ID_PRIMITIVE));
+      expected.insert(SUN_ID_FRAGMENT | scene.triangle_ids[primitive]);
+      EXPECT_TRUE(walk.held.count(f)) << "piece " << f;
     }
     for (uint k = range.first_triangle; k < range.first_triangle + range.triangle_count; k++)
       if (!in_pieces.count(k)) expected.insert(scene.triangle_ids[k]);
