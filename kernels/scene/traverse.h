@@ -66,19 +66,26 @@ SUN_INLINE int prepare_world_ray(PreparedRay *world, const TraceScene *scene, co
   return prepare_ray(world, ray->origin, ray->direction, reach);
 }
 
+// An instance whose space is the world's.
+SUN_INLINE Place place_in_world(uint number, const Search *search) {
+  Place place;
+  place.instance = number;
+  const uint passed = search->passed_primitive;
+  place.first_primitive = number > search->passed_instance                                 ? 0
+                          : number < search->passed_instance || passed >= SUN_ID_PRIMITIVE ? SUN_NONE
+                                                                                           : passed + 1;
+  place.world.near = 0.0f;
+  place.world.far = SUN_INFINITY;
+  place.from = search->passed_t;
+  return place;
+}
+
 // Carries the ray into an instance's space; t stays the same, so the direction is not normalised. False where the instance cannot be hit.
 SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *ray, const PreparedRay *world, const Search *search,
                               PreparedRay *inside, Place *place) {
   const SUN_GLOBAL Instance *instance = &scene->instances[number];
-  place->instance = number;
-  const uint passed = search->passed_primitive;
-  place->first_primitive = number > search->passed_instance                                 ? 0
-                           : number < search->passed_instance || passed >= SUN_ID_PRIMITIVE ? SUN_NONE
-                                                                                            : passed + 1;
+  *place = place_in_world(number, search);
   if (instance->flags & SUN_INSTANCE_IDENTITY) {
-    place->world.near = 0.0f;
-    place->world.far = SUN_INFINITY;
-    place->from = search->passed_t;
     *inside = *world;
     return 1;
   }
@@ -101,16 +108,17 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
 
 // Searches instance after instance, nearest first: only the first where there is one alone. True where `any` and something counted.
 SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *search, int any_one) {
-  PreparedRay world;
-  if (scene->instance_count == 0 || !prepare_world_ray(&world, scene, ray)) return 0;
-  const int alone = scene->instance_count == 1;
+  if (scene->instance_count == 0) return 0;
+  const int alone = scene->instance_count == 1, direct = alone && (scene->instances[0].flags & SUN_INSTANCE_IDENTITY);
+  PreparedRay inside;  // where one instance is the world, made where it is read: reading a copy of what was just written waits for that
+  if (!prepare_world_ray(&inside, scene, ray)) return 0;
+  const PreparedRay world = inside;
+  Place place = place_in_world(0, search);
   ulong stack[SUN_TRACE_STACK];
   InstanceWalk walk = begin_instances(scene, alone, stack);
   uint number = alone ? 0 : next_instance(scene, &world, search->passed_t, search->best_t, stack, &walk);
   while (number != SUN_NONE) {
-    PreparedRay inside;
-    Place place;
-    if (enter_instance(scene, number, ray, &world, search, &inside, &place)) {
+    if (direct || enter_instance(scene, number, ray, &world, search, &inside, &place)) {
       if (search_mesh(scene, scene->roots[number], &inside, &place, search, any_one)) return 1;
     }
     number = alone ? SUN_NONE : next_instance(scene, &world, search->passed_t, search->best_t, stack, &walk);
