@@ -98,8 +98,6 @@ std::vector<Hit> all_hits(const FlatScene &scene, const TracedRay &from, uint wa
   std::sort(hits.begin(), hits.end(), [](const Hit &a, const Hit &b) {
     return a.t != b.t ? a.t < b.t : a.instance != b.instance ? a.instance < b.instance : a.primitive < b.primitive;
   });
-  // Where two pieces overlap a hit is found in both.
-  hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
   return hits;
 }
 
