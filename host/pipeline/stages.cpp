@@ -21,10 +21,20 @@ Switches tracing(const Variant &v) {
   return switches;
 }
 
-Program build_stage(const Device &device, const std::string &name, const Switches &switches, int number, const CompileProgress &progress) {
-  constexpr double programs = 7;
+Switches on_paths(const Variant &v) {
+  Switches switches = shading(v);
+  switches["SUN_CHUNK"] = static_cast<int>(v.chunk);
+  return switches;
+}
+
+// A program of several stages.
+Program build_stages(const Device &device, const std::string &name, std::initializer_list<const char *> stages, const Switches &switches, int number,
+                     const CompileProgress &progress) {
+  constexpr double programs = 2;
   if (progress) progress(number / programs, name);
-  return {device, "stages/" + name + ".cl", switches};
+  std::string text;
+  for (const char *stage : stages) text += "#include \"stages/" + std::string(stage) + ".cl\"\n";
+  return Program::from_text(device, name, text, switches);
 }
 
 }  // namespace
@@ -48,13 +58,8 @@ Layout device_layout(const DeviceInfo &info) {
 
 Programs::Programs(const Device &device, const Variant &v, const CompileProgress &progress)
     : variant(v),
-      generate(build_stage(device, "generate", shading(v), 0, progress)),
-      intersect(build_stage(device, "intersect", tracing(v), 1, progress)),
-      first_hit(build_stage(device, "first_hit", shading(v), 2, progress)),
-      shade(build_stage(device, "shade", shading(v), 3, progress)),
-      occlude(build_stage(device, "occlude", tracing(v), 4, progress)),
-      roulette(build_stage(device, "roulette", shading(v), 5, progress)),
-      compact(build_stage(device, "compact", {{"SUN_CHUNK", static_cast<int>(v.chunk)}}, 6, progress)) {}
+      paths(build_stages(device, "paths", {"generate", "first_hit", "shade", "roulette", "compact"}, on_paths(v), 0, progress)),
+      rays(build_stages(device, "rays", {"intersect", "occlude"}, tracing(v), 1, progress)) {}
 
 Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light_samples_)
     : slots(slots_),
@@ -81,15 +86,15 @@ StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool
       frame_(frame),
       film_(film),
       lanes_(p.variant.lanes),
-      generate_(p.generate, "generate"),
-      intersect_(p.intersect, "intersect"),
-      first_hit_(p.first_hit, "first_hit"),
-      shade_(p.shade, "shade"),
-      occlude_(p.occlude, "occlude"),
-      roulette_(p.roulette, "roulette"),
-      count_(p.compact, "count_chunks"),
-      scan_(p.compact, "scan"),
-      scatter_(p.compact, "scatter_chunks") {}
+      generate_(p.paths, "generate"),
+      intersect_(p.rays, "intersect"),
+      first_hit_(p.paths, "first_hit"),
+      shade_(p.paths, "shade"),
+      occlude_(p.rays, "occlude"),
+      roulette_(p.paths, "roulette"),
+      count_(p.paths, "count_chunks"),
+      scan_(p.paths, "scan"),
+      scatter_(p.paths, "scatter_chunks") {}
 
 void StageRunner::gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out) {
   count_.run(pool_.chunks, frame_, queue, pool_.status, pool_.counts, pool_.chunk_counts, bit);

@@ -33,11 +33,12 @@ Layout device_layout(const DeviceInfo &info);
 // Says how much of a compilation is done, and what comes next.
 using CompileProgress = std::function<void(double fraction, const std::string &what)>;
 
-// Compiled programs, one a stage.
+// Compiled programs: of the stages that work on paths, LANES at once, and of those that trace rays. PoCL preprocesses each program at every start, with
+// headers of its own that take 0.06 s, so they are few (docs/decisions/0005-programs-and-caches.md).
 struct Programs {
   Programs(const Device &device, const Variant &variant, const CompileProgress &progress = {});
   Variant variant;
-  Program generate, intersect, first_hit, shade, occlude, roulette, compact;
+  Program paths, rays;
 };
 
 // Paths and queues of one pool.
