@@ -325,7 +325,7 @@ std::size_t StageProbe::items(Stage stage) const {
     for (std::size_t i = 0; i < counts[SUN_COUNT_SHADOW]; i++) rays += (status[queue[i]] & SUN_STATUS_SHADOWS) >> SUN_STATUS_SHADOWS_SHIFT;
     return rays;
   }
-  return counts[ stage == Stage::generate ? SUN_COUNT_REFILL : SUN_COUNT_LIVE];
+  return counts[stage == Stage::generate ? SUN_COUNT_REFILL : SUN_COUNT_LIVE];
 }
 
 const Film &Renderer::film() const { return state_->film; }

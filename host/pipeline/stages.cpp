@@ -21,6 +21,7 @@ Switches tracing(const Variant &v) {
   return switches;
 }
 
+// Of the program that works on paths.
 Switches on_paths(const Variant &v) {
   Switches switches = shading(v);
   switches["SUN_CHUNK"] = static_cast<int>(v.chunk);

@@ -257,7 +257,7 @@ SUN_RARE void take_care(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragm
 // The rest of 1, and 2 to 5, for lanes that pierce() let through. t, u and v (of corners 1 and 2) and the primitive mean something where the result is
 // true.
 SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, const Place *place,
-                          const Search *search, Pierced *p, tri_int pierced, tri_float *t_hit, tri_float *u_hit, tri_float *v_hit,
+                          const Search *search, const Pierced *p, tri_int pierced, tri_float *t_hit, tri_float *u_hit, tri_float *v_hit,
                           tri_uint *primitive_hit) {
   Distances d = distances_of(leaf, ray, p, pierced);
   const tri_uint id = TRI_LOAD_ID(leaf);

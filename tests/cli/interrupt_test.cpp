@@ -10,7 +10,7 @@
 
 #include "cli/process.h"
 #include "film/film_file.h"
-#include "host/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace sunstone::test {
 namespace {

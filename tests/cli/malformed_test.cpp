@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "cli/process.h"
-#include "host/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 #include "image/image.h"
 
 namespace sunstone::test {

@@ -9,7 +9,7 @@
 #include "base/file.h"
 #include "cli/process.h"
 #include "film/film_file.h"
-#include "host/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 #include "image/image.h"
 
 namespace sunstone::test {

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "cli/process.h"
-#include "host/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace sunstone::test {
 namespace {

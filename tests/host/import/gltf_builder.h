@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small glTF files made in a test: accessors are appended to one buffer, the rest is JSON that the test edits.
 #pragma once
-#include <unistd.h>
-
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -13,33 +11,9 @@
 
 #include "base/error.h"
 #include "import/importers.h"
+#include "support/temporary_folder.h"
 
 namespace sunstone::test {
-
-// A folder that goes away with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "sunstone-test-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-  TemporaryFolder(const TemporaryFolder &) = delete;
-  TemporaryFolder &operator=(const TemporaryFolder &) = delete;
-  const std::filesystem::path &path() const { return path_; }
-  std::filesystem::path write(const std::string &name, std::span<const char> bytes) const {
-    const std::filesystem::path file = path_ / name;
-    std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    return file;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 template <class T>
 constexpr int component_type() {

@@ -13,7 +13,7 @@
 #include "content/content.h"
 #include "film/film_file.h"
 #include "host/film/made_film.h"
-#include "host/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace sunstone {
 

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "cli/commands.h"
-#include "host/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace sunstone {
 

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "host/film/made_film.h"
-#include "host/film/temporary_folder.h"
+#include "support/temporary_folder.h"
 #include "output/output.h"
 
 namespace sunstone {

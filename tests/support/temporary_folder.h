@@ -4,9 +4,10 @@
 #include <stdlib.h>
 
 #include <filesystem>
+#include <fstream>
+#include <span>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace sunstone::test {
 
@@ -23,7 +24,13 @@ class TemporaryFolder {
   }
   TemporaryFolder(const TemporaryFolder &) = delete;
   TemporaryFolder &operator=(const TemporaryFolder &) = delete;
+  const std::filesystem::path &path() const { return path_; }
   std::filesystem::path operator/(const std::string &name) const { return path_ / name; }
+  std::filesystem::path write(const std::string &name, std::span<const char> bytes) const {
+    const std::filesystem::path file = path_ / name;
+    std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return file;
+  }
   std::size_t entries() const {
     std::size_t count = 0;
     for ([[maybe_unused]] const auto &entry : std::filesystem::directory_iterator(path_)) count++;
