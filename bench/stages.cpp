@@ -19,7 +19,8 @@ constexpr Row rows[] = {{Stage::gather_paths, "compact", 3 * 4 + 2 * 4},
                         {Stage::shade, "shade", 64 + 32 + 64 + 56 + 4 + 4 + 4},
                         {Stage::gather_shadow_rays, "compact_shadow", 3 * 4 + 4},
                         {Stage::occlude, "occlude", 56 + 4},
-                        {Stage::roulette, "roulette", 64 + 64 + 4 + 4}};
+                        {Stage::roulette, "roulette", 64 + 64 + 4 + 4},
+                        {Stage::branch, "branch", 2 * 128 + 8 + 4 + 4}};
 
 }  // namespace
 

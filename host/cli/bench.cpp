@@ -100,7 +100,7 @@ Session bench_session(Options &o, const RenderSettings &settings, Notices &notic
   if (!o.render.layout.empty()) session.variant.layout = layout_from_name(o.render.layout);
   session.loaded = bench_scene(o, settings, info, notices);
   session.loaded.flat.tree = load_content().build_tree(session.loaded.flat, session.variant.layout, {});
-  session.variant = scene_variant(session.variant, session.loaded.flat);
+  session.variant = scene_variant(session.variant, session.loaded.flat, settings);
   compile_session(session, o.render, settings);
   return session;
 }

@@ -75,6 +75,7 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_flag("--end-on-light", o.end_on_light, "pure: a path ends on the light that it hits, as in the lecture")->group("Integrator");
   command.add_option("--sampling", o.sampling, "pure: directions by bsdf, cosine or uniform: what the pdf is worth [bsdf]")->type_name("NAME")->group("Integrator");
   command.add_option("--light-samples", o.light_samples, "hybrid: shadow rays a vertex, 1 to 64 [1]")->type_name("N")->group("Integrator");
+  command.add_option("--indirect-samples", o.indirect_samples, "hybrid: rays that leave a vertex, each of them branching anew [1]")->type_name("N")->group("Integrator");
   command.add_option("--nee", o.nee, "hybrid: shadow rays at every hit, or at the camera ray's first hit alone [every]")->type_name("every|first")->group("Integrator");
   command.add_option("--absorption", o.absorption, "hybrid: chance that a path ends at a scattering, from 0 to below 1 [by its throughput]")->type_name("A")->group("Integrator");
   command.add_flag("--double-count", o.double_count, "hybrid: the classic mistake, on purpose: a light that is hit counts beside its shadow rays")->group("Integrator");
@@ -117,11 +118,15 @@ std::vector<float> parse_numbers(const std::string &flag, const std::string &tex
   return values;
 }
 
-// Sample numbers go up to 2^32; several shadow rays a vertex take as many points of their sequence for each.
+// Sample numbers go up to 2^32; several rays a vertex take as many points of their sequence for each.
 static SampleRange checked(const RenderOptions &o, SampleRange range) {
-  const long long rays = std::clamp(o.light_samples.value_or(1), 1ll, static_cast<long long>(SUN_MOST_LIGHT_SAMPLES));
-  if (range.last > (std::uint64_t(1) << 32) / static_cast<std::uint64_t>(rays))
-    throw UsageError("--light-samples " + std::to_string(rays), "sample numbers times shadow rays end at 2^32");
+  const auto check = [&](const char *flag, long long rays, long long most) {
+    rays = std::clamp(rays, 1ll, most);
+    if (range.last > (std::uint64_t(1) << 32) / static_cast<std::uint64_t>(rays))
+      throw UsageError(flag + (" " + std::to_string(rays)), "sample numbers times rays of a vertex end at 2^32");
+  };
+  check("--light-samples", o.light_samples.value_or(1), SUN_MOST_LIGHT_SAMPLES);
+  check("--indirect-samples", o.indirect_samples.value_or(1), SUN_MOST_INDIRECT_SAMPLES);
   return range;
 }
 
@@ -159,6 +164,12 @@ static void read_integrator_flags(const RenderOptions &o, RenderSettings &s) {
                        "more --spp spreads them over the pixel instead");
     s.light_samples = static_cast<unsigned>(*o.light_samples);
   }
+  if (o.indirect_samples) {
+    check_flag(plan, "--indirect-samples");
+    if (*o.indirect_samples < 1 || *o.indirect_samples > SUN_MOST_INDIRECT_SAMPLES)
+      throw UsageError("--indirect-samples " + std::to_string(*o.indirect_samples), "is not from 1 to " + std::to_string(SUN_MOST_INDIRECT_SAMPLES));
+    s.indirect_samples = static_cast<unsigned>(*o.indirect_samples);
+  }
   if (o.nee) {
     check_flag(plan, "--nee");
     if (*o.nee != "every" && *o.nee != "first") throw UsageError("--nee " + printable(*o.nee), "is neither every nor first");
@@ -172,6 +183,7 @@ static void read_integrator_flags(const RenderOptions &o, RenderSettings &s) {
   }
   if (o.double_count) check_flag(plan, "--double-count");
   s.double_count = o.double_count;
+  check_branching(s);
 }
 
 RenderSettings render_settings(const RenderOptions &o) {

@@ -24,7 +24,7 @@ struct RenderOptions {
   unsigned long long seed = 0;
   bool end_on_light = false, double_count = false;
   std::optional<std::string> sampling, nee;
-  std::optional<long long> light_samples;
+  std::optional<long long> light_samples, indirect_samples;
   std::optional<double> absorption;
   std::string camera, look_from, look_at, up = "y";
   std::optional<double> fov, aperture, focus;

@@ -96,10 +96,11 @@ LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, L
   return loaded;
 }
 
-Variant scene_variant(Variant variant, const FlatScene &scene) {
+Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings) {
   variant.passable = scene.has_passable;
   variant.specular = scene.has_specular;
   variant.textures = scene.has_textures;
+  variant.branching = settings.indirect_samples > 1;
   return variant;
 }
 
@@ -114,7 +115,7 @@ Session open_session(const RenderOptions &o, const RenderSettings &settings, Not
       std::async(std::launch::async, [&] { return load_scene(o, settings, session.variant.layout, info, notices); });
   session.device = Device(info, {o.threads, true, o.work_group});
   session.loaded = loading.get();
-  session.variant = scene_variant(session.variant, session.loaded.flat);
+  session.variant = scene_variant(session.variant, session.loaded.flat, settings);
   return session;
 }
 

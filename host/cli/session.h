@@ -23,7 +23,7 @@ struct LoadedScene {
 LoadedScene load_scene(const RenderOptions &options, const RenderSettings &settings, Layout layout, const DeviceInfo &info, Notices &notices);
 
 // What the programs have to know of a scene.
-Variant scene_variant(Variant variant, const FlatScene &scene);
+Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings);
 
 struct Session {
   Device device;

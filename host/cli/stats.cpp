@@ -19,9 +19,7 @@ std::string render_stats(const Session &session, const Film &film, const RenderT
   j["stages"] = nlohmann::ordered_json::array();
   for (const StageTime &time : session.device.take_times())
     j["stages"].push_back({{"stage", time.kernel}, {"launches", time.launches}, {"items", time.items}, {"seconds", time.seconds}});
-  // A path that ended after d scatterings was alive at every bounce up to d.
-  std::vector<std::uint64_t> live = counts.ended_by_depth;
-  for (std::size_t d = live.size() - 1; d-- > 0;) live[d] += live[d + 1];
+  std::vector<std::uint64_t> live = rays_by_depth(counts);
   while (live.size() > 1 && live.back() == 0) live.pop_back();
   j["live_paths_by_bounce"] = live;
   j["ended"] = {{"light", counts.ended[SUN_ENDED_LIGHT]},

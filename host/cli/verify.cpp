@@ -81,8 +81,8 @@ void Verify::scenes(const Device &device) {
       const FlatScene flat = content.flatten(scene, flatten, notices_);
       const std::string name = fmt::format("{}, lanes {}, {}", e.integrator, variant.lanes, layout_name(variant.layout));
       const double begun = now();
-      if (!programs) programs = std::make_unique<Programs>(device, scene_variant(variant, flat));
       RenderSettings settings;
+      if (!programs) programs = std::make_unique<Programs>(device, scene_variant(variant, flat, settings));
       settings.width = settings.x1 = 64;
       settings.height = settings.y1 = 48;
       settings.integrator = e.integrator;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base/error.h"
@@ -8,6 +10,8 @@
 #include "shared/frame.h"
 
 namespace sunstone {
+
+constexpr unsigned most_rays_a_sample = 1u << 20;
 
 std::span<const Plan> integrators() {
   using enum Stage;
@@ -17,8 +21,8 @@ std::span<const Plan> integrators() {
       {"pure", "path tracing as the equation says: light is found by chance alone", "Kajiya 1986", false, false,
        {gather_paths, generate, intersect, first_hit, shade, roulette}, {"point", "spot", "directional"}, {"--end-on-light", "--sampling"}},
       {"hybrid", "light sampling for what is direct, path tracing for what is not", "the lecture's speed-up", true, false,
-       {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette}, {},
-       {"--light-samples", "--nee", "--absorption", "--double-count"}},
+       {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch}, {},
+       {"--light-samples", "--indirect-samples", "--nee", "--absorption", "--double-count"}},
   };
   return table;
 }
@@ -49,6 +53,24 @@ void check_settings(const Plan &plan, const RenderSettings &settings) {
   if (settings.double_count) check_flag(plan, "--double-count");
   if (settings.light_samples < 1 || settings.light_samples > SUN_MOST_LIGHT_SAMPLES)
     throw UsageError("--light-samples", "is from 1 to " + std::to_string(SUN_MOST_LIGHT_SAMPLES));
+  if (settings.indirect_samples != plain.indirect_samples) check_flag(plan, "--indirect-samples");
+  check_branching(settings);
+}
+
+void check_branching(const RenderSettings &settings) {
+  const unsigned children = settings.indirect_samples;
+  const std::string place = "--indirect-samples " + std::to_string(children);
+  if (children < 1 || children > SUN_MOST_INDIRECT_SAMPLES) throw UsageError(place, "is from 1 to " + std::to_string(SUN_MOST_INDIRECT_SAMPLES));
+  if (children == 1) return;
+  // Rays of a sample as they are expected where nothing but the fixed chance ends them.
+  const double growth = children * (1.0 - std::max(0.0, static_cast<double>(settings.absorption)));
+  double rays = 1, generation = 1;
+  unsigned depth = 0;
+  for (; depth < settings.max_depth && rays <= most_rays_a_sample; depth++) rays += generation *= growth;
+  if (rays > most_rays_a_sample)
+    throw UsageError(place, fmt::format("with --max-depth {} each sample could take {:.2g} rays after {} scatterings alone, and each ray may send {} shadow rays; at most {} rays are allowed",
+                                        settings.max_depth, rays, depth, settings.light_samples, most_rays_a_sample),
+                     fmt::format("use --max-depth {} or less, a larger --absorption, or --indirect-samples 1 and more --spp", depth - 1));
 }
 
 const Plan &integrator(const std::string &name) {
@@ -73,6 +95,7 @@ void check_plan(const Plan &plan) {
   if (plan.direct)
     demand(at(Stage::shade) < at(Stage::gather_shadow_rays) && at(Stage::gather_shadow_rays) < at(Stage::occlude), "shadow rays are traced before they are there");
   if (has(Stage::first_hit)) demand(at(Stage::intersect) < at(Stage::first_hit) && at(Stage::first_hit) < at(Stage::shade), "first_hit stands between intersect and shade");
+  if (has(Stage::branch)) demand(plan.walk.back() == Stage::branch, "branch stands at the end: it looks at what has ended");
   if (has(Stage::roulette)) demand(at(Stage::shade) < at(Stage::roulette), "roulette stands behind shade");
 }
 

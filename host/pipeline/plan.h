@@ -8,7 +8,7 @@
 namespace sunstone {
 
 // What one step of a walk may run, in the order of a plan. `gather_*` make a dense queue for the stage behind them.
-enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette };
+enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch };
 
 struct RenderSettings;
 
@@ -31,6 +31,9 @@ void check_flag(const Plan &plan, const std::string &flag);
 
 // UsageError where settings ask for what the integrator does not take: the film would not know of it.
 void check_settings(const Plan &plan, const RenderSettings &settings);
+
+// UsageError where the tree of rays of one sample would be beyond all bounds.
+void check_branching(const RenderSettings &settings);
 
 // The queue that a stage needs has to be filled by one before it, and each that is filled has to be emptied: Error naming both otherwise.
 void check_plan(const Plan &plan);

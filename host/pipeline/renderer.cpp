@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/error.h"
 
@@ -31,10 +32,12 @@ std::vector<Tile> split(const RenderSettings &s, std::size_t bytes_a_pixel, std:
   return tiles;
 }
 
-unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths, unsigned light_samples) {
+unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths, unsigned light_samples, unsigned branch_records) {
   unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : 1u << 14;  // on CPUs the pool stays in the caches
   constexpr unsigned most_shadow_rays = 1u << 22;  // 256 MiB of them
   if (!tuning.pool) pool = static_cast<unsigned>(std::min<std::size_t>(pool, std::min<std::size_t>(most_shadow_rays, info.max_allocation / sizeof(kernel::ShadowRay)) / light_samples));
+  constexpr std::size_t most_branch_bytes = std::size_t(1) << 28;
+  if (!tuning.pool && branch_records) pool = static_cast<unsigned>(std::min<std::size_t>(pool, std::min(most_branch_bytes, info.max_allocation) / (std::size_t(64) * branch_records)));
   if (!tuning.pool && paths < pool) pool = static_cast<unsigned>(std::max<std::uint64_t>(paths, 16));
   return std::max(16u, (pool + 15) / 16 * 16);
 }
@@ -129,25 +132,41 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if (settings.end_on_light) frame.flags |= SUN_FRAME_END_ON_LIGHT;
   frame.sampling = settings.sampling == Sampling::uniform ? SUN_SAMPLING_UNIFORM : settings.sampling == Sampling::cosine ? SUN_SAMPLING_COSINE : SUN_SAMPLING_BSDF;
   frame.light_samples = settings.light_samples;
+  frame.indirect_samples = settings.indirect_samples;
   frame.absorption = settings.absorption;
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
 
   for (const Stage stage : s.plan.walk) {
     const bool layers = s.film.layers.size() > SUN_LAYER_FIRST_OPTIONAL + frame.bounce_layers, lit = frame.emitter_count > 0;
-    if (stage == Stage::first_hit ? layers : stage == Stage::gather_shadow_rays || stage == Stage::occlude ? lit : true) s.walk.push_back(stage);
+    const bool branches = settings.indirect_samples > 1;
+    if (stage == Stage::first_hit ? layers : stage == Stage::branch ? branches : stage == Stage::gather_shadow_rays || stage == Stage::occlude ? lit : true) s.walk.push_back(stage);
   }
 
   const std::size_t bytes_a_pixel = s.film.layers.size() * SUN_FILM_CHANNELS * SUN_FILM_BINS * sizeof(std::int64_t);
   const std::size_t room = device.info().memory > device.allocated() ? (device.info().memory - device.allocated()) / 2 : 0;
   s.tiles = split(settings, bytes_a_pixel, std::min(device.info().max_allocation, room));
-  frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16, settings.light_samples);
-  s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk, settings.light_samples);
+  if (settings.indirect_samples > 1 && !programs.variant.branching) throw std::logic_error("programs without branches");
+  const unsigned branch_records = programs.variant.branching ? SUN_BRANCH_RECORDS(settings.max_depth) : 0;
+  frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16, settings.light_samples, branch_records);
+  if (static_cast<std::uint64_t>(frame.pool) * branch_records * 16 > std::numeric_limits<kernel::uint>::max())
+    throw UsageError("--pool " + std::to_string(frame.pool), "with the branches of --max-depth " + std::to_string(settings.max_depth) + " has more words than 32 bits count", "use a smaller pool");
+  s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk, settings.light_samples, branch_records);
   s.device_frame = Buffer<kernel::Frame>(device, 1, "frame");
   s.device_film = Buffer<std::int64_t>(
       device, s.film.layers.size() * static_cast<std::size_t>(s.tiles[0].width) * static_cast<std::size_t>(s.tiles[0].height) * SUN_FILM_CHANNELS * SUN_FILM_BINS, "film");
 }
 
 Renderer::~Renderer() = default;
+
+std::vector<std::uint64_t> rays_by_depth(const RenderCounts &counts) {
+  std::vector<std::uint64_t> rays(SUN_COUNT_DEPTHS);
+  std::uint64_t alive = counts.paths;
+  for (std::size_t d = 0; d < rays.size(); d++) {
+    rays[d] = alive;
+    alive = alive + counts.branched_by_depth[d] - counts.ended_by_depth[d];
+  }
+  return rays;
+}
 
 // Adds what was counted since the last look; the device's counters wrap around.
 void Renderer::State::take_counts(std::vector<kernel::uint> now) {
@@ -156,6 +175,11 @@ void Renderer::State::take_counts(std::vector<kernel::uint> now) {
     counts.ended[i] += since(SUN_COUNT_ENDED + i);
     counts.paths += since(SUN_COUNT_ENDED + i);
     counts.camera_rays += since(SUN_COUNT_ENDED + i);
+  }
+  for (std::size_t i = 0; i < SUN_COUNT_DEPTHS; i++) {
+    counts.branched_by_depth[i] += since(SUN_COUNT_BRANCHED + i);
+    counts.paths -= since(SUN_COUNT_BRANCHED + i);
+    counts.camera_rays -= since(SUN_COUNT_BRANCHED + i);
   }
   counts.camera_rays += since(SUN_COUNT_RAYS);
   counts.bounce_rays += since(SUN_COUNT_RAYS + 1);
@@ -335,7 +359,7 @@ std::size_t Renderer::scene_bytes() const { return state_->scene.bytes; }
 unsigned Renderer::pool_slots() const { return state_->pool->slots; }
 std::size_t Renderer::pool_bytes() const {
   const Pool &p = *state_->pool;
-  return p.paths.bytes() + p.status.bytes() + p.hits.bytes() + p.shadow_rays.bytes() + 2 * p.rays[0].bytes() + p.shadow_queue.bytes();
+  return p.paths.bytes() + p.status.bytes() + p.hits.bytes() + p.shadow_rays.bytes() + p.branches.bytes() + 2 * p.rays[0].bytes() + p.shadow_queue.bytes();
 }
 
 std::map<std::string, std::string> film_settings(const RenderSettings &s, const kernel::Camera &camera) {
@@ -355,6 +379,7 @@ std::map<std::string, std::string> film_settings(const RenderSettings &s, const 
     if (flag == "--end-on-light") all[name] = s.end_on_light ? "yes" : "no";
     if (flag == "--sampling") all[name] = sampling_name(s.sampling);
     if (flag == "--light-samples") all[name] = std::to_string(s.light_samples);
+    if (flag == "--indirect-samples") all[name] = std::to_string(s.indirect_samples);
     if (flag == "--nee") all[name] = s.nee_first ? "first" : "every";
     if (flag == "--absorption") all[name] = s.absorption < 0 ? "by throughput" : fmt::format("{}", s.absorption);
     if (flag == "--double-count") all[name] = s.double_count ? "yes: wrong on purpose, direct light counts twice" : "no";

@@ -33,6 +33,7 @@ struct RenderSettings {
   bool end_on_light = false;
   Sampling sampling = Sampling::bsdf;
   unsigned light_samples = 1;  // shadow rays a vertex
+  unsigned indirect_samples = 1;  // rays that leave a vertex
   bool nee_first = false;      // shadow rays from the camera ray's hit alone
   float absorption = -1;       // chance to end at each scattering; negative: by the throughput
   bool double_count = false;   // wrong on purpose

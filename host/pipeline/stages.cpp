@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/stages.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "shared/options.h"
@@ -25,16 +26,23 @@ Switches tracing(const Variant &v) {
 Switches on_paths(const Variant &v) {
   Switches switches = shading(v);
   switches["SUN_CHUNK"] = static_cast<int>(v.chunk);
+  switches["SUN_BRANCHING"] = v.branching;
   return switches;
 }
 
+std::vector<std::string> stages_on_paths(const Variant &v) {
+  std::vector<std::string> stages = {"generate", "first_hit", "shade", "roulette", "compact"};
+  if (v.branching) stages.push_back("branch");
+  return stages;
+}
+
 // A program of several stages.
-Program build_stages(const Device &device, const std::string &name, std::initializer_list<const char *> stages, const Switches &switches, int number,
+Program build_stages(const Device &device, const std::string &name, const std::vector<std::string> &stages, const Switches &switches, int number,
                      const CompileProgress &progress) {
   constexpr double programs = 2;
   if (progress) progress(number / programs, name);
   std::string text;
-  for (const char *stage : stages) text += "#include \"stages/" + std::string(stage) + ".cl\"\n";
+  for (const std::string &stage : stages) text += "#include \"stages/" + stage + ".cl\"\n";
   return Program::from_text(device, name, text, switches);
 }
 
@@ -59,10 +67,10 @@ Layout device_layout(const DeviceInfo &info) {
 
 Programs::Programs(const Device &device, const Variant &v, const CompileProgress &progress)
     : variant(v),
-      paths(build_stages(device, "paths", {"generate", "first_hit", "shade", "roulette", "compact"}, on_paths(v), 0, progress)),
+      paths(build_stages(device, "paths", stages_on_paths(v), on_paths(v), 0, progress)),
       rays(build_stages(device, "rays", {"intersect", "occlude"}, tracing(v), 1, progress)) {}
 
-Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light_samples_)
+Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light_samples_, unsigned branch_records)
     : slots(slots_),
       chunks((slots_ + chunk - 1) / chunk),
       light_samples(light_samples_),
@@ -70,6 +78,7 @@ Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light
       status(device, slots, "path status"),
       hits(device, slots, "hits"),
       shadow_rays(device, static_cast<std::size_t>(slots) * light_samples, "shadow rays"),
+      branches(device, std::max<std::size_t>(1, static_cast<std::size_t>(slots) * branch_records * 16), "branches"),
       rays{Buffer<kernel::uint>(device, slots, "ray queue"), Buffer<kernel::uint>(device, slots, "ray queue")},
       shadow_queue(device, slots, "shadow queue"),
       chunk_counts(device, chunks, "queue chunks"),
@@ -79,6 +88,7 @@ Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light
   rays[0].upload(order);
   status.fill_zero();
   paths.fill_zero();
+  branches.fill_zero();
 }
 
 StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool &pool, const Buffer<kernel::Frame> &frame, const Buffer<std::int64_t> &film)
@@ -95,7 +105,9 @@ StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool
       roulette_(p.paths, "roulette"),
       count_(p.paths, "count_chunks"),
       scan_(p.paths, "scan"),
-      scatter_(p.paths, "scatter_chunks") {}
+      scatter_(p.paths, "scatter_chunks") {
+  if (p.variant.branching) branch_.emplace(p.paths, "branch");
+}
 
 void StageRunner::gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out) {
   count_.run(pool_.chunks, frame_, queue, pool_.status, pool_.counts, pool_.chunk_counts, bit);
@@ -122,7 +134,7 @@ void StageRunner::run(Stage stage) {
       break;
     case Stage::shade:
       shade_.run(bundles, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1],
-                 scene_.pages[2], scene_.pages[3], pool_.paths, pool_.status, pool_.hits, pool_.shadow_rays, rays, pool_.counts, film_);
+                 scene_.pages[2], scene_.pages[3], pool_.paths, pool_.status, pool_.hits, pool_.shadow_rays, pool_.branches, rays, pool_.counts, film_);
       break;
     case Stage::gather_shadow_rays: gather(SUN_STATUS_SHADOW, rays, pool_.shadow_queue); break;
     case Stage::occlude:
@@ -131,7 +143,8 @@ void StageRunner::run(Stage stage) {
                    scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.shadow_rays,
                    pool_.shadow_queue, pool_.counts, film_, number * pool_.slots);
       break;
-    case Stage::roulette: roulette_.run(bundles, frame_, pool_.paths, pool_.status, rays, pool_.counts); break;
+    case Stage::roulette: roulette_.run(bundles, frame_, pool_.paths, pool_.status, pool_.branches, rays, pool_.counts); break;
+    case Stage::branch: branch_->run(bundles, frame_, pool_.paths, pool_.status, pool_.hits, pool_.branches, rays, pool_.counts); break;
   }
 }
 

@@ -22,6 +22,7 @@ struct Variant {
   bool columns = false;
   unsigned chunk = 1024;
   bool passable = true, specular = true, textures = true;
+  bool branching = false;
   bool operator==(const Variant &) const = default;
 };
 
@@ -43,12 +44,13 @@ struct Programs {
 
 // Paths and queues of one pool.
 struct Pool {
-  Pool(const Device &device, unsigned slots, unsigned chunk, unsigned light_samples);
+  Pool(const Device &device, unsigned slots, unsigned chunk, unsigned light_samples, unsigned branch_records);
   unsigned slots, chunks, light_samples;
   Buffer<kernel::uint> paths;       // SUN_PATH_WORDS a slot
   Buffer<kernel::uint> status;
   Buffer<kernel::Hit> hits;
   Buffer<kernel::ShadowRay> shadow_rays;  // light_samples times the slots: the first ray of each slot, then the second of each ...
+  Buffer<kernel::uint> branches;    // branch_records of 16 words a slot, where vertices branch
   Buffer<kernel::uint> rays[2];     // the ray queue and its successor
   Buffer<kernel::uint> shadow_queue;
   Buffer<kernel::uint> chunk_counts;
@@ -72,6 +74,7 @@ class StageRunner {
   unsigned lanes_;
   int current_ = 0;  // which of pool.rays is the queue
   Kernel generate_, intersect_, first_hit_, shade_, occlude_, roulette_, count_, scan_, scatter_;
+  std::optional<Kernel> branch_;  // where vertices branch
 };
 
 }  // namespace sunstone

@@ -42,6 +42,7 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 #define SUN_SAMPLING_COSINE 1u
 #define SUN_SAMPLING_UNIFORM 2u
 #define SUN_MOST_LIGHT_SAMPLES 64
+#define SUN_MOST_INDIRECT_SAMPLES 1024
 
 #define SUN_FILTER_TABLE 1024  // cells of the filter's inverse cdf
 
@@ -78,7 +79,8 @@ typedef struct Frame {
   uint sampling;                 // SUN_SAMPLING_: how directions are drawn
   uint light_samples;            // shadow rays a vertex
   float absorption;              // chance to end at each scattering, whatever the throughput; negative: by the throughput
-  uint pad[2];
+  uint indirect_samples;         // rays that leave a vertex
+  uint pad;
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 

@@ -39,6 +39,11 @@
 #define SUN_TEXTURES 1
 #endif
 
+// 1 where several rays leave a vertex.
+#ifndef SUN_BRANCHING
+#define SUN_BRANCHING 0
+#endif
+
 // 1 where the device has cl_khr_int64_base_atomics; otherwise the film adds two 32-bit words with carry.
 #ifndef SUN_ATOMICS_64
 #define SUN_ATOMICS_64 0

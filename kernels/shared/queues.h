@@ -13,6 +13,7 @@ SUN_NAMESPACE_BEGIN
 #define SUN_STATUS_FIRST_HIT 0x00040000u   // the layers of the first hit have been written
 #define SUN_STATUS_ENDED 0x00080000u       // the path has just ended and is not counted yet
 #define SUN_STATUS_ENDED_SHIFT 20          // why it ended, below
+#define SUN_STATUS_AGAIN 0x00400000u       // the hit is that of a vertex taken up again, for its next child: no ray is traced
 #define SUN_STATUS_SHADOWS 0x7f000000u     // how many shadow rays wait
 #define SUN_STATUS_SHADOWS_SHIFT 24
 #define SUN_ENDED_LIGHT 0
@@ -35,7 +36,11 @@ SUN_NAMESPACE_BEGIN
 #define SUN_COUNT_RAYS 12        // 3 words: camera rays that went on straight, bounce rays, shadow rays
 #define SUN_COUNT_BY_DEPTH 16    // 64 words: paths ended after so many scatterings (the last: or more)
 #define SUN_COUNT_DEPTHS 64
-#define SUN_COUNT_WORDS 96
+#define SUN_COUNT_BRANCHED 96    // 64 words: branches begun beside the first, at vertices after so many scatterings (the last: or more)
+#define SUN_COUNT_WORDS 160
+
+// Records of 16 words that a slot needs to walk a tree of rays (transport/branch.h): its state, and two for each vertex that may wait.
+#define SUN_BRANCH_RECORDS(max_depth) (1u + 2u * (max_depth))
 
 // One hit, as intersect leaves it for shade.
 typedef struct Hit {

@@ -3,7 +3,7 @@
 //   reads    origin, direction, passed_*; status; the tree
 //   writes   hits, by slot
 //   queues   rays
-//   holds    afterwards each live slot's hit is the smallest (t, instance, primitive) behind what its ray passed, or a miss
+//   holds    afterwards, but where a vertex is taken up again with the hit it had, each live slot's hit is the smallest (t, instance, primitive) behind what its ray passed, or a miss
 #include "path/path.h"
 #include "scene/traverse.h"
 #include "shared/frame.h"
@@ -40,7 +40,7 @@ SUN_BODY void intersect_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, cons
   if (position >= counts[SUN_COUNT_LIVE]) return;
   uint slot = rays[position];
   if (position + SUN_AHEAD < counts[SUN_COUNT_LIVE]) SUN_SOON(path_words + (size_t)rays[position + SUN_AHEAD] * SUN_PATH_WORDS);
-  if (!(status[slot] & SUN_STATUS_ALIVE)) return;
+  if ((status[slot] & (SUN_STATUS_ALIVE | SUN_STATUS_AGAIN)) != SUN_STATUS_ALIVE) return;
   TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count);
   Paths paths;
   paths.words = (SUN_GLOBAL uint *)path_words;

@@ -9,11 +9,14 @@
 #include "path/path.h"
 #include "path/queue.h"
 #include "shared/frame.h"
+#if SUN_BRANCHING
+#include "transport/branch.h"
+#endif
 
 #define SUN_ROULETTE_LEAST 0.05f  // chance to survive, at the dimmest
 
-SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *rays,
-                              const SUN_GLOBAL uint *counts, uint first) {
+SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *branches,
+                              const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts, uint first) {
   uint length = counts[SUN_COUNT_LIVE];
   if (first >= length) return;
   QueueLanes lanes = queue_lanes(rays, first, length);
@@ -35,6 +38,11 @@ SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *pa
   uint_n y = path.pixel / (uint_n)(frame->tile_width);
   uint_n x = path.pixel - y * (uint_n)(frame->tile_width);
   SamplerKey key = sampler_key(frame->seed, x + (uint_n)(frame->tile_x0), y + (uint_n)(frame->tile_y0), path.sample, frame->sampler);
+#if SUN_BRANCHING
+  key = branch_key(key, load_branch_state(frame, branches, lanes.slot).branch);
+#else
+  (void)branches;
+#endif
   // Of the vertex that shade has just left.
   real u = sample_2d(&key, SUN_DIM_EMITTER(path.vertex - (uint_n)(1))).y;
   mask dies = active & (u >= survival);
@@ -48,7 +56,7 @@ SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *pa
   store_uint(status, lanes.slot, dies, ended);
 }
 
-SUN_KERNEL void roulette(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *rays,
-                         const SUN_GLOBAL uint *counts) {
-  roulette_bundle(frame, path_words, status, rays, counts, (uint)get_global_id(0) * LANES);
+SUN_KERNEL void roulette(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *branches,
+                         const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts) {
+  roulette_bundle(frame, path_words, status, branches, rays, counts, (uint)get_global_id(0) * LANES);
 }

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // shade: what a hit adds to the film, and where its path goes next.
 //   reads    hits; every column of the path; status
-//   writes   film; every column of the path; status; shadow rays where SUN_FRAME_DIRECT is set
+//   writes   film; every column of the path; status; shadow rays where SUN_FRAME_DIRECT is set; the slot's stack where vertices branch
 //   queues   rays -> rays, shadow_rays (by bits of the status; compact makes the queues)
 //   holds    afterwards a path is alive with a ray to trace, or has ended with a reason, never both
 //   source   [Kajiya86 eq. 1], weights [Veach97 9.2]
 #include "path/contribute.h"
 #include "path/path.h"
 #include "path/queue.h"
+#if SUN_BRANCHING
+#include "transport/branch.h"
+#endif
 #include "transport/direct.h"
 #include "transport/emission.h"
 #include "transport/scatter.h"
@@ -26,7 +29,8 @@ SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, m
 }
 
 SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
-                           SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words, uint first) {
+                           SUN_GLOBAL ShadowRay *shadow_rays, SUN_GLOBAL uint *branches, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words,
+                           uint first) {
   uint length = counts[SUN_COUNT_LIVE];
   if (first >= length) return;
   Scene opened = open_scene(frame, SCENE_ARGUMENTS);
@@ -49,6 +53,29 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
   uint_n picture_x = path.pixel - picture_y * (uint_n)(frame->tile_width) + (uint_n)(frame->tile_x0);
   picture_y = picture_y + (uint_n)(frame->tile_y0);
   SamplerKey key = sampler_key(frame->seed, picture_x, picture_y, path.sample, frame->sampler);
+#if SUN_BRANCHING
+  BranchState state = load_branch_state(frame, branches, lanes.slot);
+  // A vertex that is taken up again: all it adds was added the first time; its next child is to come.
+  mask again = active & ((word & (uint_n)(SUN_STATUS_AGAIN)) != (uint_n)(0));
+  mask begins = active & !again & (path.vertex == (uint_n)(0));
+  state.height = begins ? (uint_n)(0) : state.height;
+  state.branch = begins ? (uint_n)(0) : state.branch;
+  BranchVertex vertex;
+  vertex.path = path;
+  vertex.hit = hit;
+  vertex.branch = state.branch;
+  vertex.child = (uint_n)(0);
+  vertex.word = depth;
+  if (ANY(again)) {
+    BranchVertex waiting = load_branch_vertex(frame, branches, lanes.slot, again, state.height - (uint_n)(1));
+    vertex.branch = again ? waiting.branch : vertex.branch;
+    vertex.child = again ? waiting.child : vertex.child;
+  }
+  key = branch_key(key, vertex.branch);
+#else
+  (void)branches;
+  mask again = active & !active;
+#endif
 
   vec3 radiance = splat3((real)(0.0f));  // that reaches the path's last vertex along this ray ...
   vec3 arrived = throughput;             // ... and what it is worth from there
@@ -72,7 +99,7 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
     arrived = throughput;
     mask glowing;
     vec3 emission = hit_emission(scene, &surface, &hit, depth, path.pdf_solid_angle, present, &glowing);
-    radiance = select3(present, emission, radiance);
+    radiance = select3(present & !again, emission, radiance);
     mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
     mask limited = present & (depth >= (uint_n)(frame->max_depth));
     // At the limit a path may still go straight on through smooth thin glass, which is no scattering.
@@ -87,7 +114,7 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
       Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
       vec3 wo_local = to_local(&surface.shading, wo);
       Lobes lobes = bsdf_lobes(&bsdf, scene->tables, wo_local);
-      mask asks = scatters & !limited;
+      mask asks = scatters & !limited & !again;
       if (frame->flags & SUN_FRAME_FIRST) asks = asks & (depth == (uint_n)(0));
       if ((frame->flags & SUN_FRAME_DIRECT) && frame->emitter_count > 0 && ANY(asks)) {
         uint rays_a_vertex = frame->light_samples;
@@ -104,9 +131,26 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
           shadows = shadows + (direct.valid ? (uint_n)(1) : (uint_n)(0));
         }
       }
-      real u_lobe = sample_1d(&key, SUN_DIM_LOBE(path.vertex));
-      vec2 u = sample_2d(&key, SUN_DIM_DIRECTION(path.vertex));
+      SamplerKey scatter_key = key;
+#if SUN_BRANCHING
+      // Where mirrors and smooth glass are all there is, further rays would go the same ways.
+      mask blurs = !(lobes.delta_reflection | lobes.delta_transmission) | (lobes.pick_facets < 1.0f);
+      mask splits = scatters & !limited & blurs;
+      uint_n children = (uint_n)(frame->indirect_samples);
+      scatter_key.sample = splits ? key.sample * children + vertex.child : key.sample;  // siblings are further points of the same sequence
+#endif
+      real u_lobe = sample_1d(&scatter_key, SUN_DIM_LOBE(path.vertex));
+      vec2 u = sample_2d(&scatter_key, SUN_DIM_DIRECTION(path.vertex));
       Scatter scatter = sample_scatter(scene, &surface, &lobes, bsdf.solid, wo_local, u_lobe, u);
+#if SUN_BRANCHING
+      scatter.weight = select3(splits, scale3(scatter.weight, (real)(1.0f / (float)frame->indirect_samples)), scatter.weight);
+      state.branch = splits ? branch_of_child(vertex.branch, path.vertex, vertex.child) : vertex.branch;
+      vertex.child = vertex.child + (uint_n)(1);
+      mask waits = splits & (vertex.child < children);
+      uint_n place = again ? state.height - (uint_n)(1) : state.height;
+      if (ANY(waits)) store_branch_vertex(frame, branches, lanes.slot, waits, place, &vertex);
+      state.height = splits ? place + (waits ? (uint_n)(1) : (uint_n)(0)) : state.height;
+#endif
       turned = scatters & !limited & scatter.valid & !scatter.straight;
       straight = straight | (scatters & scatter.valid & scatter.straight);
       throughput = select3(scatters & scatter.valid, mul3(throughput, scatter.weight), throughput);
@@ -141,10 +185,13 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
   path.throughput_b = throughput.z;
   path.vertex = path.vertex + (uint_n)(1);
   path_store(&paths, lanes.slot, active, &path);
+#if SUN_BRANCHING
+  store_branch_state(frame, branches, lanes.slot, active, &state);
+#endif
   store_uint(status, lanes.slot, active, next_word);
 }
 
 SUN_KERNEL void shade(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
-                      SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
-  shade_bundle(frame, SCENE_ARGUMENTS, path_words, status, hits, shadow_rays, rays, counts, film_words, (uint)get_global_id(0) * LANES);
+                      SUN_GLOBAL ShadowRay *shadow_rays, SUN_GLOBAL uint *branches, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
+  shade_bundle(frame, SCENE_ARGUMENTS, path_words, status, hits, shadow_rays, branches, rays, counts, film_words, (uint)get_global_id(0) * LANES);
 }

@@ -98,6 +98,9 @@ TEST(Usage, FlagsOfOneIntegrator) {
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--light-samples", "0"}, 2, "pure");
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--light-samples", "-3"}, 2, "pure");
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--light-samples", "65"}, 2, "65");
+  expect_refusal({"render", cornell, "--integrator", "path", "--indirect-samples", "2"}, 2, "--integrator hybrid");
+  expect_refusal({"render", cornell, "--integrator", "hybrid", "--indirect-samples", "0"}, 2, "1 to 1024");
+  expect_refusal({"render", cornell, "--integrator", "hybrid", "--indirect-samples", "64"}, 2, "--max-depth 3 or less");
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--nee", "last"}, 2, "last");
   for (const char *chance : {"1", "-0.1", "nan", "0.99999999999"})
     expect_refusal({"render", cornell, "--integrator", "hybrid", "--absorption", chance}, 2, "--absorption");

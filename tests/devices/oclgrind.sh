@@ -5,15 +5,22 @@
 . "$(dirname "$0")/common.sh"
 fill=$4
 command -v oclgrind >/dev/null || skip "oclgrind is not installed"
-flags=("$root/scenes/first-picture/first-picture.glb" --size 8x8 --spp 1 --max-depth 2 --aov all)
-reference "${flags[@]}"
+
 # Oclgrind 21.10 lacks two things that clang makes of our code: llvm.bitreverse when it optimises, and what marks an inlined struct result.
-# shellcheck disable=SC2016
-oclgrind --build-options "-O0 -Dalways_inline=unused" --data-races --uninitialized --check-api --log "$work/oclgrind.txt" \
-  sh -c 'LD_PRELOAD=$0:$LD_PRELOAD exec "$@"' "$fill" \
-  "$sunstone" render "${flags[@]}" -q --device Oclgrind --lanes 1 --layout binary -o oclgrind.film --stats oclgrind.json || { cat oclgrind.txt; fail "the render"; }
-if [ -s oclgrind.txt ]; then
-  head -100 oclgrind.txt
-  fail "Oclgrind has something to report"
-fi
-same_film Oclgrind oclgrind.json
+interpret() {  # name, render's flags
+  local name=$1
+  shift
+  reference "$@"
+  # shellcheck disable=SC2016
+  oclgrind --build-options "-O0 -Dalways_inline=unused" --data-races --uninitialized --check-api --log "$work/$name.txt" \
+    sh -c 'LD_PRELOAD=$0:$LD_PRELOAD exec "$@"' "$fill" \
+    "$sunstone" render "$@" -q --device Oclgrind --lanes 1 --layout binary -o oclgrind.film --stats oclgrind.json || { cat "$name.txt"; fail "the render of $name"; }
+  if [ -s "$name.txt" ]; then
+    head -100 "$name.txt"
+    fail "Oclgrind has something to report of $name"
+  fi
+  same_film "Oclgrind, $name" oclgrind.json
+}
+
+interpret path "$root/scenes/first-picture/first-picture.glb" --size 8x8 --spp 1 --max-depth 2 --aov all
+interpret branching "$root/scenes/cornell/cornell.gltf" --size 8x8 --spp 1 --max-depth 2 --integrator hybrid --indirect-samples 2 --absorption 0.25

@@ -190,6 +190,18 @@ TEST(Agree, HybridInEveryForm) {
                      hybrid("absorption", 48, [](RenderSettings &s) { s.absorption = 0.3f; })});
 }
 
+// A tree of rays a sample, where it is full, and where chance prunes it.
+TEST(Agree, HybridThatBranches) {
+  Scene scene = everything();
+  expect_ways_agree(Case(scene), picture(48, 32, 4), 32,
+                    {hybrid("three rays a vertex", 8, [](RenderSettings &s) { s.indirect_samples = 3, s.absorption = 0; }),
+                     hybrid("five, half of them absorbed", 12, [](RenderSettings &s) { s.indirect_samples = 5, s.absorption = 0.5f, s.light_samples = 2; })});
+  scene.lights.clear();
+  set_sky_map(scene, sky_map(16, 8, {4, 3.5f, 3}));
+  expect_ways_agree(Case(std::move(scene)), picture(48, 32, 4), 32,
+                    {hybrid("two rays a vertex, shadow rays from the first", 32, [](RenderSettings &s) { s.indirect_samples = 2, s.nee_first = true; })});
+}
+
 TEST(Agree, HybridFromTheFirstHitAlone) {
   Scene scene = everything();
   scene.lights.clear();

@@ -213,7 +213,7 @@ TEST(Bits, WaysOfEveryIntegrator) {
   Scene lit = everything(), unlit = lit;
   unlit.lights.clear();
   const Case lit_case(lit), unlit_case(unlit);
-  std::vector<std::pair<const Case *, RenderSettings>> kinds(3, {&lit_case, settings()});
+  std::vector<std::pair<const Case *, RenderSettings>> kinds(4, {&lit_case, settings()});
   kinds[0].second.integrator = "hybrid";
   kinds[0].second.light_samples = 3;
   kinds[0].second.absorption = 0.2f;
@@ -222,6 +222,9 @@ TEST(Bits, WaysOfEveryIntegrator) {
   kinds[2].first = &unlit_case;
   kinds[2].second.integrator = "pure";
   kinds[2].second.sampling = Sampling::uniform;
+  kinds[3].second.integrator = "hybrid";
+  kinds[3].second.indirect_samples = 3;
+  kinds[3].second.absorption = 0.25f;
   std::vector<std::string> seen;
   for (const auto &[made, s] : kinds) {
     const auto expected = hashes(render(*made, s, samples).film);
@@ -241,7 +244,7 @@ TEST(Bits, WaysOfEveryIntegrator) {
     EXPECT_EQ(hashes(halves), expected) << s.integrator;
     seen.push_back(expected.at("film"));
   }
-  EXPECT_EQ(std::set<std::string>(seen.begin(), seen.end()).size(), 3u);
+  EXPECT_EQ(std::set<std::string>(seen.begin(), seen.end()).size(), kinds.size());
 }
 
 TEST(Bits, LayersDoNotChangeTheBeauty) {

@@ -103,4 +103,31 @@ TEST(Counts, HugeRadianceIsClampedAndCounted) {
   EXPECT_EQ(mean(r.film, "beauty", whole(r.film), 0), double(SUN_FILM_LIMIT));
 }
 
+// A tree of rays in a closed room of which nothing is lost: each vertex sends what it is told to, down to the depth limit.
+TEST(Counts, RaysOfATree) {
+  Scene room;
+  add(room, box({-1, -1, -1}, {1, 1, 1}, true), matt({0.5f, 0.5f, 0.5f}));
+  add_point_light(room, {0.3f, 0.4f, 0}, {1, 1, 1});
+  add_camera(room, {0, 0, 0.5f}, {0, 0, -1}, 60);
+  const Case made(std::move(room));
+  RenderSettings s = picture(16, 16, 3);
+  s.integrator = "hybrid";
+  s.indirect_samples = 4;
+  s.absorption = 0;
+  for (const unsigned pool : {0u, 48u}) {
+    Ways ways;
+    ways.pool = pool;
+    const RenderCounts counts = render(made, s, {0, 2}, ways).counts;
+    const std::uint64_t paths = 16 * 16 * 2;
+    EXPECT_EQ(counts.paths, paths);
+    EXPECT_EQ(counts.camera_rays, paths);
+    EXPECT_EQ(counts.bounce_rays, paths * (4 + 16 + 64));
+    EXPECT_EQ(counts.shadow_rays, paths * (1 + 4 + 16));
+    EXPECT_EQ(counts.ended[SUN_ENDED_DEPTH], paths * 64);
+    const std::vector<std::uint64_t> rays = rays_by_depth(counts);
+    for (std::size_t depth = 0; depth <= 3; depth++) EXPECT_EQ(rays[depth], paths << (2 * depth)) << depth;
+    EXPECT_EQ(rays[4], 0u);
+  }
+}
+
 }  // namespace sunstone::test

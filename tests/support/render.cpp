@@ -29,18 +29,19 @@ Kept &kept() {
 }
 
 const Programs &programs_for(const Variant &v, std::size_t work_group) {
-  const unsigned features = (v.passable ? 1u : 0u) | (v.specular ? 2u : 0u) | (v.textures ? 4u : 0u);
+  const unsigned features = (v.passable ? 1u : 0u) | (v.specular ? 2u : 0u) | (v.textures ? 4u : 0u) | (v.branching ? 8u : 0u);
   auto &found = kept().programs[{work_group, v.lanes, v.layout, v.columns, v.chunk, features}];
   if (!found) found = std::make_unique<Programs>(test_device(work_group), v);
   return *found;
 }
 
-Variant variant_of(const Case &scene, const Ways &ways) {
+Variant variant_of(const Case &scene, const RenderSettings &settings, const Ways &ways) {
   Variant v = device_variant(test_device(ways.work_group).info());
   v.lanes = ways.lanes.value_or(v.lanes);
   v.layout = ways.layout.value_or(v.layout);
   v.columns = ways.columns.value_or(v.columns);
   v.chunk = ways.chunk.value_or(v.chunk);
+  v.branching = settings.indirect_samples > 1;
   if (ways.trimmed) {
     const FlatScene &flat = scene.flat(v.layout);
     v.passable = flat.has_passable;
@@ -100,7 +101,7 @@ RenderSettings picture(int width, int height, unsigned max_depth) {
 Filter box_filter() { return {Filter::Kind::box, 0.5f}; }
 
 Rendered render(const Case &scene, const RenderSettings &settings, SampleRange samples, const Ways &ways, const std::function<bool(const RenderProgress &)> &progress) {
-  const Variant variant = variant_of(scene, ways);
+  const Variant variant = variant_of(scene, settings, ways);
   Renderer renderer(test_device(ways.work_group), programs_for(variant, ways.work_group), scene.flat(variant.layout), scene.camera(settings.width, settings.height),
                     settings, Tuning{ways.pool, variant.lanes});
   renderer.render(samples, progress);
