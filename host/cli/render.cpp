@@ -172,6 +172,7 @@ void Render::run() {
   session_ = open_session(o_, settings_, notices_);
   progress_.line(session_.device.info().description());
   progress_.line(session_.loaded.line);
+  if (const Plan &plan = integrator(settings_.integrator); !plan.leaves_out.empty()) notices_.note("--integrator " + plan.name, "leaves out " + plan.leaves_out);
   compile();
   const SelfTestResult self_test = cached_self_test(session_.device);
   reproducible_ = self_test.reproducible ? "yes" : "no";
@@ -227,7 +228,7 @@ void add_render(CLI::App &app, CommandContext &context) {
   CLI::App *command = app.add_subcommand("render", "Render a scene");
   add_render_options(*command, *options);
   std::string integrators_text = "Integrators:\n";
-  for (const Plan &plan : integrators()) integrators_text += fmt::format("  {:<10} {} ({})\n", plan.name, plan.summary, plan.source);
+  for (const Plan &plan : integrators()) integrators_text += fmt::format("  {:<12} {} ({})\n", plan.name, plan.summary, plan.source);
   command->footer(integrators_text +
                   "\nExamples:\n"
                   "  sunstone render scenes/cornell/cornell.gltf --size 512x512 -o cornell.png\n"

@@ -74,8 +74,8 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--filter", o.filter, "box, tent, gaussian, mitchell or blackman-harris [blackman-harris]")->type_name("NAME")->group("Picture");
   command.add_flag("--end-on-light", o.end_on_light, "pure: a path ends on the light that it hits, as in the lecture")->group("Integrator");
   command.add_option("--sampling", o.sampling, "pure: directions by bsdf, cosine or uniform: what the pdf is worth [bsdf]")->type_name("NAME")->group("Integrator");
-  command.add_option("--light-samples", o.light_samples, "hybrid: shadow rays a vertex, 1 to 64 [1]")->type_name("N")->group("Integrator");
-  command.add_option("--indirect-samples", o.indirect_samples, "hybrid: rays that leave a vertex, each of them branching anew [1]")->type_name("N")->group("Integrator");
+  command.add_option("--light-samples", o.light_samples, "hybrid, distribution: shadow rays a vertex, 1 to 64 [1]")->type_name("N")->group("Integrator");
+  command.add_option("--indirect-samples", o.indirect_samples, "hybrid: rays that leave a vertex, each branching anew; distribution: rays for each effect that blurs [1]")->type_name("N")->group("Integrator");
   command.add_option("--nee", o.nee, "hybrid: shadow rays at every hit, or at the camera ray's first hit alone [every]")->type_name("every|first")->group("Integrator");
   command.add_option("--absorption", o.absorption, "hybrid: chance that a path ends at a scattering, from 0 to below 1 [by its throughput]")->type_name("A")->group("Integrator");
   command.add_flag("--double-count", o.double_count, "hybrid: the classic mistake, on purpose: a light that is hit counts beside its shadow rays")->group("Integrator");
@@ -157,7 +157,7 @@ static void read_integrator_flags(const RenderOptions &o, RenderSettings &s) {
   if (o.light_samples) {
     check_flag(plan, "--light-samples");
     const std::string place = "--light-samples " + std::to_string(*o.light_samples);
-    if (*o.light_samples < 1) throw UsageError(place, "hybrid without shadow rays is pure path tracing", "use --integrator pure");
+    if (*o.light_samples < 1) throw UsageError(place, "without shadow rays light is found by chance alone", "use --integrator pure");
     if (*o.light_samples > SUN_MOST_LIGHT_SAMPLES)
       throw UsageError(place, "is more than " + std::to_string(SUN_MOST_LIGHT_SAMPLES) + ": each vertex of each of up to " + std::to_string(s.max_depth) +
                                   " scatterings would send as many rays, and each path in flight take " + std::to_string(*o.light_samples) + " x 64 bytes",

@@ -100,7 +100,7 @@ Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSetti
   variant.passable = scene.has_passable;
   variant.specular = scene.has_specular;
   variant.textures = scene.has_textures;
-  variant.branching = settings.indirect_samples > 1;
+  variant.branching = branches(settings);
   return variant;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -22,7 +23,8 @@ namespace {
 struct Expected {
   const char *integrator, *film_hash;
 };
-constexpr Expected expected[] = {{"path", "8a59847fca232a7958695e5dcdadb6b4"}, {"pure", "036424246eac7cec0b5f27f98aeb44b4"}, {"hybrid", "284d85983cb5cfe8fd56093010e49436"}};
+constexpr Expected expected[] = {{"path", "8a59847fca232a7958695e5dcdadb6b4"}, {"pure", "036424246eac7cec0b5f27f98aeb44b4"}, {"hybrid", "284d85983cb5cfe8fd56093010e49436"},
+                                 {"distribution", "952d39ff8537a814c32e00dbdf90c717"}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -72,34 +74,35 @@ void Verify::scenes(const Device &device) {
   plain.layout = Layout::binary;
   if (!(plain == suited)) variants.push_back(plain);
   for (const Variant &variant : variants) {
-    std::unique_ptr<Programs> programs;
+    std::map<bool, std::unique_ptr<Programs>> programs_of;  // of paths that branch, and of others
     for (const Expected &e : expected) {
       Scene scene = make_verify_scene(integrator(e.integrator).refuses.empty());
       FlattenOptions flatten;
       flatten.layout = variant.layout;
       flatten.max_page_bytes = device.info().max_allocation;
       const FlatScene flat = content.flatten(scene, flatten, notices_);
-      const std::string name = fmt::format("{}, lanes {}, {}", e.integrator, variant.lanes, layout_name(variant.layout));
+      const std::string title = fmt::format("{}, lanes {}, {}", e.integrator, variant.lanes, layout_name(variant.layout));
       const double begun = now();
       RenderSettings settings;
-      if (!programs) programs = std::make_unique<Programs>(device, scene_variant(variant, flat, settings));
       settings.width = settings.x1 = 64;
       settings.height = settings.y1 = 48;
       settings.integrator = e.integrator;
       settings.max_depth = 6;
-      if (!integrator(e.integrator).weighted && integrator(e.integrator).direct) {  // hybrid: what path does not run
-        settings.light_samples = 3;
-        settings.absorption = 0.25f;
-      }
+      const std::string name = e.integrator;
+      if (name == "hybrid" || name == "distribution") settings.light_samples = 3;
+      if (name == "hybrid") settings.absorption = 0.25f;
+      if (name == "distribution") settings.indirect_samples = 2;
+      std::unique_ptr<Programs> &programs = programs_of[branches(settings)];
+      if (!programs) programs = std::make_unique<Programs>(device, scene_variant(variant, flat, settings));
       Renderer renderer(device, *programs, flat, content.flatten_camera(scene.cameras[0], settings.width, settings.height), settings, {});
       renderer.render({0, 2}, {});
       const double cold = now() - begun;
       const double warm_begun = now();
       renderer.render({2, 4}, {});
       const std::string hash = film_hash(renderer.film()).hex();
-      tell(hash == e.film_hash, name, fmt::format("{} (first samples {:.2f} s, the same again {:.2f} s)", hash, cold, now() - warm_begun));
+      tell(hash == e.film_hash, title, fmt::format("{} (first samples {:.2f} s, the same again {:.2f} s)", hash, cold, now() - warm_begun));
       const RenderCounts &counts = renderer.counts();
-      if (counts.nan) tell(false, name + ": finite", fmt::format("{} contributions were not", counts.nan));
+      if (counts.nan) tell(false, title + ": finite", fmt::format("{} contributions were not", counts.nan));
     }
   }
 }

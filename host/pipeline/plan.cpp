@@ -16,13 +16,16 @@ constexpr unsigned most_rays_a_sample = 1u << 20;
 std::span<const Plan> integrators() {
   using enum Stage;
   static const std::vector<Plan> table = {
-      {"path", "path tracing with next-event estimation, multiple importance sampling and roulette", "Kajiya 1986, Veach 1997", true, true,
-       {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette}, {}, {}},
-      {"pure", "path tracing as the equation says: light is found by chance alone", "Kajiya 1986", false, false,
-       {gather_paths, generate, intersect, first_hit, shade, roulette}, {"point", "spot", "directional"}, {"--end-on-light", "--sampling"}},
-      {"hybrid", "light sampling for what is direct, path tracing for what is not", "the lecture's speed-up", true, false,
+      {"path", "path tracing with next-event estimation, multiple importance sampling and roulette", "Kajiya 1986, Veach 1997", true, true, false,
+       {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette}, {}, {}, ""},
+      {"pure", "path tracing as the equation says: light is found by chance alone", "Kajiya 1986", false, false, false,
+       {gather_paths, generate, intersect, first_hit, shade, roulette}, {"point", "spot", "directional"}, {"--end-on-light", "--sampling"}, ""},
+      {"hybrid", "light sampling for what is direct, path tracing for what is not", "the lecture's speed-up", true, false, false,
        {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch}, {},
-       {"--light-samples", "--indirect-samples", "--nee", "--absorption", "--double-count"}},
+       {"--light-samples", "--indirect-samples", "--nee", "--absorption", "--double-count"}, ""},
+      {"distribution", "Whitted's tree with rays spread over what blurs: gloss, translucency, soft shadows, the lens", "Cook, Porter, Carpenter 1984", true, false, true,
+       {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch}, {}, {"--light-samples", "--indirect-samples"},
+       "light that matt surfaces send each other; --integrator path follows it"},
   };
   return table;
 }
@@ -57,12 +60,15 @@ void check_settings(const Plan &plan, const RenderSettings &settings) {
   check_branching(settings);
 }
 
+bool branches(const RenderSettings &settings) { return settings.indirect_samples > 1 || integrator(settings.integrator).effects; }
+
 void check_branching(const RenderSettings &settings) {
-  const unsigned children = settings.indirect_samples;
-  const std::string place = "--indirect-samples " + std::to_string(children);
-  if (children < 1 || children > SUN_MOST_INDIRECT_SAMPLES) throw UsageError(place, "is from 1 to " + std::to_string(SUN_MOST_INDIRECT_SAMPLES));
-  if (children == 1) return;
-  // Rays of a sample as they are expected where nothing but the fixed chance ends them.
+  const std::string place = "--indirect-samples " + std::to_string(settings.indirect_samples);
+  if (settings.indirect_samples < 1 || settings.indirect_samples > SUN_MOST_INDIRECT_SAMPLES)
+    throw UsageError(place, "is from 1 to " + std::to_string(SUN_MOST_INDIRECT_SAMPLES));
+  if (settings.indirect_samples == 1) return;
+  // Rays of a sample as they are expected where nothing but the fixed chance ends them, and every vertex has every effect.
+  const unsigned children = settings.indirect_samples * (integrator(settings.integrator).effects ? 2 : 1);
   const double growth = children * (1.0 - std::max(0.0, static_cast<double>(settings.absorption)));
   double rays = 1, generation = 1;
   unsigned depth = 0;

@@ -16,9 +16,11 @@ struct Plan {
   std::string name, summary, source;
   bool direct = false;      // shade sends shadow rays
   bool weighted = false;    // and weights them and the emitters that are hit against each other; else each light has one of the two
+  bool effects = false;     // rays leave a vertex by effect, each followed
   std::vector<Stage> walk;  // one step of every path; repeated until all have ended
   std::vector<std::string> refuses;  // emitters that no path of it can meet: "point", "spot", "directional"
   std::vector<std::string> takes;    // flags of its own
+  std::string leaves_out;            // light that it does not follow, and who does
 };
 
 std::span<const Plan> integrators();
@@ -31,6 +33,9 @@ void check_flag(const Plan &plan, const std::string &flag);
 
 // UsageError where settings ask for what the integrator does not take: the film would not know of it.
 void check_settings(const Plan &plan, const RenderSettings &settings);
+
+// Whether several rays may leave a vertex.
+bool branches(const RenderSettings &settings);
 
 // UsageError where the tree of rays of one sample would be beyond all bounds.
 void check_branching(const RenderSettings &settings);

@@ -127,6 +127,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if (settings.transparent_background) frame.flags |= SUN_FRAME_TRANSPARENT;
   if (s.plan.direct) frame.flags |= SUN_FRAME_DIRECT;
   if (s.plan.weighted) frame.flags |= SUN_FRAME_WEIGHTED;
+  if (s.plan.effects) frame.flags |= SUN_FRAME_EFFECTS;
   if (settings.nee_first) frame.flags |= SUN_FRAME_FIRST;
   if (settings.double_count) frame.flags |= SUN_FRAME_TWICE;
   if (settings.end_on_light) frame.flags |= SUN_FRAME_END_ON_LIGHT;
@@ -138,14 +139,13 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
 
   for (const Stage stage : s.plan.walk) {
     const bool layers = s.film.layers.size() > SUN_LAYER_FIRST_OPTIONAL + frame.bounce_layers, lit = frame.emitter_count > 0;
-    const bool branches = settings.indirect_samples > 1;
-    if (stage == Stage::first_hit ? layers : stage == Stage::branch ? branches : stage == Stage::gather_shadow_rays || stage == Stage::occlude ? lit : true) s.walk.push_back(stage);
+    if (stage == Stage::first_hit ? layers : stage == Stage::branch ? branches(settings) : stage == Stage::gather_shadow_rays || stage == Stage::occlude ? lit : true) s.walk.push_back(stage);
   }
 
   const std::size_t bytes_a_pixel = s.film.layers.size() * SUN_FILM_CHANNELS * SUN_FILM_BINS * sizeof(std::int64_t);
   const std::size_t room = device.info().memory > device.allocated() ? (device.info().memory - device.allocated()) / 2 : 0;
   s.tiles = split(settings, bytes_a_pixel, std::min(device.info().max_allocation, room));
-  if (settings.indirect_samples > 1 && !programs.variant.branching) throw std::logic_error("programs without branches");
+  if (branches(settings) && !programs.variant.branching) throw std::logic_error("programs without branches");
   const unsigned branch_records = programs.variant.branching ? SUN_BRANCH_RECORDS(settings.max_depth) : 0;
   frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16, settings.light_samples, branch_records);
   if (static_cast<std::uint64_t>(frame.pool) * branch_records * 16 > std::numeric_limits<kernel::uint>::max())

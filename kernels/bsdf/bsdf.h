@@ -55,7 +55,7 @@ SUN_FN Facet facet_of(const Lobes *l, real cosine_oh) {
     f.transmitted = add3(f.transmitted, scale3(l->glass_tint, 1.0f - scaled));
   }
   real reflected = luminance(f.reflected), both = reflected + luminance(f.transmitted);
-  f.reflection_chance = both > 0.0f ? reflected / both : (real)(1.0f);
+  f.reflection_chance = clamp_real(both > 0.0f ? reflected / both : (real)(1.0f), l->chance_least, l->chance_most);
   return f;
 }
 

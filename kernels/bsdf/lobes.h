@@ -39,6 +39,7 @@ typedef struct Lobes {
   vec3 above, below;       // times lost(i)
   real glass_above;        // times 1 - E(i) of the side of wo
   vec3 glass_below;        // times 1 - E(i) of the far side
+  real chance_least, chance_most;  // of reflection, where facets both reflect and transmit: 0 and 1, but where one of the two is wanted alone
   real pick_facets, pick_above, pick_below, pick_grazing_above, pick_grazing_below;  // pmf of the strategies of sample
   mask specular;
 } Lobes;
@@ -53,6 +54,8 @@ SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
   real dielectric = 1.0f - b->metallic;
   real clear = dielectric * b->transmission;
   l.specular = b->specular;
+  l.chance_least = zero;
+  l.chance_most = (real)(1.0f);
   l.alpha = smooth ? (real)(SUN_ALPHA_SMOOTH) : b->alpha;
   l.alpha_axis = smooth ? zero : table_axis(b->alpha);
   l.eta = b->eta;
@@ -122,6 +125,18 @@ SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
   l.pick_below = below * (1.0f - grazing) / total;
   l.pick_grazing_above = above * grazing / total;
   l.pick_grazing_below = below * grazing / total;
+  return l;
+}
+
+// The facets alone, either what they reflect or what they transmit: an effect to be followed by rays of its own.
+SUN_FN Lobes facets_alone(const Lobes *lobes, mask through) {
+  const real zero = (real)(0.0f), one = (real)(1.0f);
+  Lobes l = *lobes;
+  l.diffuse = l.above = l.below = l.glass_below = splat3(zero);
+  l.glass_above = l.pick_above = l.pick_below = l.pick_grazing_above = l.pick_grazing_below = zero;
+  l.pick_facets = one;
+  l.chance_least = through ? zero : one;
+  l.chance_most = l.chance_least;
   return l;
 }
 

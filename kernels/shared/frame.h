@@ -36,6 +36,7 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 #define SUN_FRAME_FIRST 16u        // shadow rays leave from the camera ray's hit alone
 #define SUN_FRAME_TWICE 32u        // wrong on purpose: emitters that are hit count in full beside shadow rays
 #define SUN_FRAME_END_ON_LIGHT 64u // a path ends on the emitter that it hits
+#define SUN_FRAME_EFFECTS 128u     // rays leave a vertex by effect: what facets reflect and what they transmit, each followed; nothing else is
 
 // How directions are drawn: as the bsdf asks, or without a look at it (what is no delta): with a cosine, or evenly.
 #define SUN_SAMPLING_BSDF 0u

@@ -39,7 +39,7 @@
 #define SUN_TEXTURES 1
 #endif
 
-// 1 where several rays leave a vertex.
+// 1 where several rays may leave a vertex.
 #ifndef SUN_BRANCHING
 #define SUN_BRANCHING 0
 #endif

@@ -133,21 +133,21 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
       }
       SamplerKey scatter_key = key;
 #if SUN_BRANCHING
-      // Where mirrors and smooth glass are all there is, further rays would go the same ways.
-      mask blurs = !(lobes.delta_reflection | lobes.delta_transmission) | (lobes.pick_facets < 1.0f);
-      mask splits = scatters & !limited & blurs;
-      uint_n children = (uint_n)(frame->indirect_samples);
-      scatter_key.sample = splits ? key.sample * children + vertex.child : key.sample;  // siblings are further points of the same sequence
+      uint_n place = again ? state.height - (uint_n)(1) : state.height;
+      Children children = vertex_children(frame, &lobes, vertex.child, place, limited);
+      scatters = scatters & (children.count > (uint_n)(0));
+      mask splits = scatters & (children.count > (uint_n)(1));
+      scatter_key.sample = key.sample * children.sharing + children.number;  // siblings are further points of the same sequence
+      if (frame->flags & SUN_FRAME_EFFECTS) lobes = facets_alone(&lobes, children.through);
 #endif
       real u_lobe = sample_1d(&scatter_key, SUN_DIM_LOBE(path.vertex));
       vec2 u = sample_2d(&scatter_key, SUN_DIM_DIRECTION(path.vertex));
       Scatter scatter = sample_scatter(scene, &surface, &lobes, bsdf.solid, wo_local, u_lobe, u);
 #if SUN_BRANCHING
-      scatter.weight = select3(splits, scale3(scatter.weight, (real)(1.0f / (float)frame->indirect_samples)), scatter.weight);
+      scatter.weight = select3(splits, scale3(scatter.weight, 1.0f / real_of_uint(children.sharing)), scatter.weight);
       state.branch = splits ? branch_of_child(vertex.branch, path.vertex, vertex.child) : vertex.branch;
       vertex.child = vertex.child + (uint_n)(1);
-      mask waits = splits & (vertex.child < children);
-      uint_n place = again ? state.height - (uint_n)(1) : state.height;
+      mask waits = splits & (vertex.child < children.count);
       if (ANY(waits)) store_branch_vertex(frame, branches, lanes.slot, waits, place, &vertex);
       state.height = splits ? place + (waits ? (uint_n)(1) : (uint_n)(0)) : state.height;
 #endif

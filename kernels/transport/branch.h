@@ -43,6 +43,40 @@ SUN_FN SamplerKey branch_key(SamplerKey key, uint_n branch) {
   return key;
 }
 
+// The rays that leave a vertex.
+typedef struct Children {
+  uint_n count;
+  uint_n sharing;  // of the child in question: how many share what it stands for,
+  uint_n number;   // and its number among those
+  mask through;    // of effects: it follows what facets transmit, not what they reflect
+} Children;
+
+// Child `child` of LANES vertices. Without effects `frame->indirect_samples` rays, any way that the bsdf has; with them as many for each effect that blurs. Mirrors
+// and smooth glass, where further rays would go the same way, send one. `limited`: at the depth limit, where a ray may still go straight on. `below`: vertices that wait
+// beneath. Of effects these are fewer than the depth, as the last child of a vertex leaves none waiting, and no other goes straight on; other rays that do are
+// bounded: with a full stack one is sent.
+SUN_FN Children vertex_children(const SUN_GLOBAL Frame *frame, const Lobes *lobes, uint_n child, uint_n below, mask limited) {
+  const uint_n none = (uint_n)(0), one = (uint_n)(1), several = (uint_n)(frame->indirect_samples);
+  Children c;
+  if (frame->flags & SUN_FRAME_EFFECTS) {
+    mask facets = lobes->pick_facets > 0.0f;
+    mask clear = facets & (max_real(max_of3(lobes->glass_tint), max_real(max_of3(lobes->t0), max_of3(lobes->t90))) > 0.0f);
+    uint_n reflected = (facets & !limited) ? (lobes->delta_reflection ? one : several) : none;
+    uint_n transmitted = clear ? ((lobes->delta_transmission | limited) ? one : several) : none;
+    c.count = reflected + transmitted;
+    c.through = child >= reflected;
+    c.sharing = c.through ? transmitted : reflected;
+    c.number = c.through ? child - reflected : child;
+  } else {
+    mask blurs = !(lobes->delta_reflection | lobes->delta_transmission) | (lobes->pick_facets < 1.0f);
+    c.count = (blurs & !limited & (below < (uint_n)(frame->max_depth))) ? several : one;
+    c.through = limited & !limited;
+    c.sharing = c.count;
+    c.number = child;
+  }
+  return c;
+}
+
 // A vertex with children to come.
 typedef struct BranchVertex {
   Path path;       // as it arrived: the ray, and the throughput before this hit

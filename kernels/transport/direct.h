@@ -94,7 +94,18 @@ SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lo
     pdf = is_light ? (real)(1.0f) : pdf;
   }
   if (ANY(is_environment)) {
+#if SUN_BRANCHING
+    // The map's chances leave what is dim to rays that meet it by chance [Karlik19]. Where only effects are followed none may: half of the shadow rays go anywhere.
+    mask anywhere = (frame->flags & SUN_FRAME_EFFECTS) ? u_point.x >= 0.5f : is_environment & !is_environment;
+    if (frame->flags & SUN_FRAME_EFFECTS) u_point.x = 2.0f * u_point.x - (anywhere ? (real)(1.0f) : (real)(0.0f));
+#endif
     EnvironmentSample sample = environment_sample(&frame->environment, scene->environment_cdf, u_point.x, u_point.y);
+#if SUN_BRANCHING
+    if (frame->flags & SUN_FRAME_EFFECTS) {
+      sample.direction = select3(anywhere, square_to_uniform_sphere(u_point), sample.direction);
+      sample.pdf = 0.5f * environment_pdf(&frame->environment, scene->environment_cdf, sample.direction) + 0.5f * square_to_uniform_sphere_pdf();
+    }
+#endif
     vec3 radiance = environment_radiance(&frame->environment, scene->environment_texels, sample.direction);
     emission = select3(is_environment, radiance, emission);
     direction = select3(is_environment, sample.direction, direction);

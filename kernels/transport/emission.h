@@ -49,7 +49,9 @@ SUN_FN vec3 escaped_emission(const Scene *scene, vec3 direction, uint_n depth, r
   if (environment->kind == SUN_ENVIRONMENT_NONE || !ANY(active)) return black;
   vec3 radiance = environment_radiance(environment, scene->environment_texels, direction);
   real pdf = (real)(0.0f);
-  if (environment->emitter != SUN_NONE)
+  if (scene->frame->flags & SUN_FRAME_EFFECTS)
+    pdf = (real)(1.0f);  // shadow rays reach all of it, see direct.h
+  else if (environment->emitter != SUN_NONE)
     pdf = scene->emitters[environment->emitter].pmf * environment_pdf(environment, scene->environment_cdf, direction);
   return select3(active, scale3(radiance, emission_weight(scene, depth, pdf_solid_angle, pdf)), black);
 }

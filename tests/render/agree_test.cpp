@@ -202,6 +202,56 @@ TEST(Agree, HybridThatBranches) {
                     {hybrid("two rays a vertex, shadow rays from the first", 32, [](RenderSettings &s) { s.indirect_samples = 2, s.nee_first = true; })});
 }
 
+// Panes that are half matt and half clear: rays branch at each and go straight on through many at one depth, more often than the depth limit has room on the stack.
+TEST(Agree, HybridThatBranchesThroughPanes) {
+  Scene scene;
+  add(scene, quad({0, 0, -2}, {3, 0, 0}, {0, 3, 0}), matt({0.7f, 0.6f, 0.5f}));
+  Material pane = thin_glass({0.9f, 0.95f, 0.9f});
+  pane.transmission = 0.6f;
+  for (int i = 0; i < 5; i++) add(scene, quad({0, 0, 0.3f * static_cast<float>(i)}, {1, 0, 0}, {0, 1, 0}), pane);
+  add_point_light(scene, {1.5f, 1, 1}, {6, 6, 6});
+  add_camera(scene, {0, 0, 3}, {0, 0, 0}, 40);
+  expect_ways_agree(Case(std::move(scene)), picture(24, 16, 2), 64, {hybrid("three rays a vertex", 24, [](RenderSettings &s) { s.indirect_samples = 3, s.absorption = 0; })});
+}
+
+Way distribution(const char *name, std::uint64_t samples, unsigned rays) {
+  return {name, [rays](RenderSettings &s) { s.integrator = "distribution", s.indirect_samples = rays; }, samples};
+}
+
+// Where nothing is matt, following what facets reflect and transmit is all there is; and what is direct is that of any integrator.
+TEST(Agree, DistributionOfWhatItFollows) {
+  Scene scene;
+  add(scene, box({-2, 0, -2}, {2, 2.4f, 2}, true), metal({0.8f, 0.7f, 0.6f}, 0));
+  add(scene, sphere({-0.6f, 0.7f, 0}, 0.6f), glass({0.4f, 0.1f, 0.1f}));
+  add(scene, quad({0.7f, 0.8f, 0.2f}, {0.6f, 0, 0.2f}, {0, 0.6f, 0}), thin_glass({0.6f, 0.9f, 0.7f}));
+  add(scene, quad({0, 2.3f, 0}, {0.8f, 0, 0}, {0, 0, 0.8f}), lamp({3, 4, 5}));
+  add_camera(scene, {0, 1.2f, 1.9f}, {0, 0.8f, 0}, 70);
+  expect_ways_agree(Case(std::move(scene)), picture(48, 32, 5), 48, {distribution("one ray an effect", 24, 1), distribution("three rays an effect", 24, 3)});
+  expect_ways_agree(Case(everything()), picture(48, 32, 1), 48, {distribution("what is direct", 48, 1)});
+}
+
+// Gloss: a rough plate shows a lit wall. Only what facets lose among themselves is missing, a few hundredths at this roughness.
+TEST(Agree, DistributionOfGloss) {
+  Scene scene;
+  add(scene, quad({0, 0, 0}, {3, 0, 0}, {0, 0, -3}), metal({0.9f, 0.8f, 0.7f}, 0.35f));
+  add(scene, quad({0, 1.5f, -2}, {3, 0, 0}, {0, 1.5f, 0}), matt({0.7f, 0.7f, 0.7f}));
+  add_point_light(scene, {0, 2, 2}, {20, 20, 20});
+  add_camera(scene, {0, 1.0f, 2.5f}, {0, 0, 0}, 30);
+  const Case made(std::move(scene));
+  const RenderSettings s = picture(24, 16, 2);
+  for (const unsigned rays : {1u, 4u}) {
+    RenderSettings with = s;
+    with.integrator = "distribution";
+    with.indirect_samples = rays;
+    const std::vector<Film> films = render_seeds(made, with, 256, 8), reference = render_seeds(made, s, 256, 8);
+    const Window floor{0, 8, 24, 16};
+    const double here = moments(means(films, "bounce.2", floor, 1)).mean, there = moments(means(reference, "bounce.2", floor, 1)).mean;
+    EXPECT_GT(there, 0);
+    EXPECT_LT(here, 1.002 * there) << rays;
+    EXPECT_GT(here, 0.95 * there) << rays;
+  }
+}
+
 TEST(Agree, HybridFromTheFirstHitAlone) {
   Scene scene = everything();
   scene.lights.clear();

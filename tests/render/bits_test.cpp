@@ -213,7 +213,7 @@ TEST(Bits, WaysOfEveryIntegrator) {
   Scene lit = everything(), unlit = lit;
   unlit.lights.clear();
   const Case lit_case(lit), unlit_case(unlit);
-  std::vector<std::pair<const Case *, RenderSettings>> kinds(4, {&lit_case, settings()});
+  std::vector<std::pair<const Case *, RenderSettings>> kinds(5, {&lit_case, settings()});
   kinds[0].second.integrator = "hybrid";
   kinds[0].second.light_samples = 3;
   kinds[0].second.absorption = 0.2f;
@@ -225,6 +225,8 @@ TEST(Bits, WaysOfEveryIntegrator) {
   kinds[3].second.integrator = "hybrid";
   kinds[3].second.indirect_samples = 3;
   kinds[3].second.absorption = 0.25f;
+  kinds[4].second.integrator = "distribution";
+  kinds[4].second.indirect_samples = 2;
   std::vector<std::string> seen;
   for (const auto &[made, s] : kinds) {
     const auto expected = hashes(render(*made, s, samples).film);

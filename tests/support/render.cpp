@@ -41,7 +41,7 @@ Variant variant_of(const Case &scene, const RenderSettings &settings, const Ways
   v.layout = ways.layout.value_or(v.layout);
   v.columns = ways.columns.value_or(v.columns);
   v.chunk = ways.chunk.value_or(v.chunk);
-  v.branching = settings.indirect_samples > 1;
+  v.branching = branches(settings);
   if (ways.trimmed) {
     const FlatScene &flat = scene.flat(v.layout);
     v.passable = flat.has_passable;
