@@ -20,7 +20,11 @@ constexpr Row rows[] = {{Stage::gather_paths, "compact", 3 * 4 + 2 * 4},
                         {Stage::gather_shadow_rays, "compact_shadow", 3 * 4 + 4},
                         {Stage::occlude, "occlude", 56 + 4},
                         {Stage::roulette, "roulette", 64 + 64 + 4 + 4},
-                        {Stage::branch, "branch", 2 * 128 + 8 + 4 + 4}};
+                        {Stage::branch, "branch", 2 * 128 + 8 + 4 + 4},
+                        {Stage::emit, "emit", 64 + 64 + 4 + 4},
+                        {Stage::deposit, "deposit", 2 * 64 + 2 * 64 + 32 + 128 + 64 + 4 + 4 + 4},
+                        {Stage::connect, "connect", 2 * 64 + 2 * 64 + 32 + 128 + 64 + 4 + 4 + 4},
+                        {Stage::occlude_all, "occlude", 64 + 4}};
 
 }  // namespace
 

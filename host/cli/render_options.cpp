@@ -79,6 +79,9 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--nee", o.nee, "hybrid: shadow rays at every hit, or at the camera ray's first hit alone [every]")->type_name("every|first")->group("Integrator");
   command.add_option("--absorption", o.absorption, "hybrid: chance that a path ends at a scattering, from 0 to below 1 [by its throughput]")->type_name("A")->group("Integrator");
   command.add_flag("--double-count", o.double_count, "hybrid: the classic mistake, on purpose: a light that is hit counts beside its shadow rays")->group("Integrator");
+  command.add_option("--heuristic", o.heuristic, "bdpt: strategies share a path by the power heuristic, or by the balance heuristic [power]")->type_name("power|balance")->group("Integrator");
+  command.add_option("--strategy", o.strategy, "bdpt: paths of S vertices from the light and T from the eye alone")->type_name("S,T")->group("Integrator");
+  command.add_flag("--unweighted", o.unweighted, "bdpt: that strategy as if there were no other")->group("Integrator");
   command.add_option("--camera", o.camera, "The file's camera of this name or number [0]")->type_name("NAME|INDEX")->group("Camera");
   command.add_option("--look-from", o.look_from, "A camera here ...")->type_name("X,Y,Z")->group("Camera");
   command.add_option("--look-at", o.look_at, "... looking there")->type_name("X,Y,Z")->group("Camera");
@@ -181,6 +184,22 @@ static void read_integrator_flags(const RenderOptions &o, RenderSettings &s) {
     s.absorption = static_cast<float>(*o.absorption);
     if (!(s.absorption < 1)) throw UsageError("--absorption", "rounds to 1");
   }
+  if (o.heuristic) {
+    check_flag(plan, "--heuristic");
+    if (*o.heuristic != "power" && *o.heuristic != "balance") throw UsageError("--heuristic " + printable(*o.heuristic), "is neither power nor balance");
+    s.balance = *o.heuristic == "balance";
+  }
+  if (o.strategy) {
+    check_flag(plan, "--strategy");
+    const auto parts = split(*o.strategy, ',');
+    if (parts.size() != 2) throw UsageError("--strategy " + printable(*o.strategy), "is not S,T: the vertices from the light's side, and from the eye's");
+    s.strategy_s = parse<unsigned>("--strategy", parts[0], "a number of vertices");
+    s.strategy_t = parse<unsigned>("--strategy", parts[1], "a number of vertices");
+    if (s.strategy_t == 0) throw UsageError("--strategy " + printable(*o.strategy), "has no vertex at the eye, which light alone does not meet: T is at least 1");
+    if (s.strategy_s > 4096 || s.strategy_t > 4096) throw UsageError("--strategy " + printable(*o.strategy), "is longer than any path");
+  }
+  if (o.unweighted) check_flag(plan, "--unweighted");
+  s.unweighted = o.unweighted;
   if (o.double_count) check_flag(plan, "--double-count");
   s.double_count = o.double_count;
   check_branching(s);
@@ -212,6 +231,7 @@ RenderSettings render_settings(const RenderOptions &o) {
   s.filter = filter_from_name(o.filter);
   s.transparent_background = o.background == "transparent";
   s.layers = parse_layers(o.layers);
+  check_settings(integrator(s.integrator), s);
   return s;
 }
 

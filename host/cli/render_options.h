@@ -23,7 +23,8 @@ struct RenderOptions {
   unsigned max_depth = 16;
   unsigned long long seed = 0;
   bool end_on_light = false, double_count = false;
-  std::optional<std::string> sampling, nee;
+  bool unweighted = false;
+  std::optional<std::string> sampling, nee, heuristic, strategy;
   std::optional<long long> light_samples, indirect_samples;
   std::optional<double> absorption;
   std::string camera, look_from, look_at, up = "y";

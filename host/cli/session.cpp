@@ -97,6 +97,7 @@ LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, L
 }
 
 Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings) {
+  variant.bidirectional = integrator(settings.integrator).bidirectional;
   variant.passable = scene.has_passable;
   variant.specular = scene.has_specular;
   variant.textures = scene.has_textures;

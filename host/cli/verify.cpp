@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -74,7 +73,7 @@ void Verify::scenes(const Device &device) {
   plain.layout = Layout::binary;
   if (!(plain == suited)) variants.push_back(plain);
   for (const Variant &variant : variants) {
-    std::map<bool, std::unique_ptr<Programs>> programs_of;  // of paths that branch, and of others
+    std::unique_ptr<Programs> programs;
     for (const Expected &e : expected) {
       Scene scene = make_verify_scene(integrator(e.integrator).refuses.empty());
       FlattenOptions flatten;
@@ -92,8 +91,8 @@ void Verify::scenes(const Device &device) {
       if (name == "hybrid" || name == "distribution") settings.light_samples = 3;
       if (name == "hybrid") settings.absorption = 0.25f;
       if (name == "distribution") settings.indirect_samples = 2;
-      std::unique_ptr<Programs> &programs = programs_of[branches(settings)];
-      if (!programs) programs = std::make_unique<Programs>(device, scene_variant(variant, flat, settings));
+      const Variant wanted = scene_variant(variant, flat, settings);
+      if (!programs || !(programs->variant == wanted)) programs = std::make_unique<Programs>(device, wanted);
       Renderer renderer(device, *programs, flat, content.flatten_camera(scene.cameras[0], settings.width, settings.height), settings, {});
       renderer.render({0, 2}, {});
       const double cold = now() - begun;

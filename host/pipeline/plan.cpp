@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "pipeline/settings.h"
+#include "shared/bidirectional.h"
 #include "shared/frame.h"
 
 namespace sunstone {
@@ -26,6 +27,8 @@ std::span<const Plan> integrators() {
       {"distribution", "Whitted's tree with rays spread over what blurs: gloss, translucency, soft shadows, the lens", "Cook, Porter, Carpenter 1984", true, false, true,
        {gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch}, {}, {"--light-samples", "--indirect-samples"},
        "light that matt surfaces send each other; --integrator path follows it"},
+      {"bdpt", "bidirectional path tracing: paths from the eye and from the lights, joined in every way", "Lafortune & Willems 1993, Veach & Guibas 1995", true, true, false,
+       {gather_paths, emit, intersect, first_hit, deposit, connect, gather_shadow_rays, occlude_all, roulette}, {}, {"--heuristic", "--strategy", "--unweighted"}, "", true},
   };
   return table;
 }
@@ -46,6 +49,23 @@ void check_flag(const Plan &plan, const std::string &flag) {
   throw UsageError(flag, "means nothing to --integrator " + plan.name, "it belongs to " + takers);
 }
 
+// A light subpath of any pixel may light any other.
+static void check_bidirectional(const Plan &plan, const RenderSettings &s) {
+  if (s.x0 != 0 || s.y0 != 0 || s.x1 != s.width || s.y1 != s.height)
+    throw UsageError("--crop", "is not for --integrator " + plan.name + ": light that starts anywhere falls into the window, so all of the picture would be traced for it", "render the whole picture, or use --integrator path");
+  if (s.max_depth > SUN_MOST_BIDIRECTIONAL_DEPTH)
+    throw UsageError("--max-depth " + std::to_string(s.max_depth), "is more than --integrator " + plan.name + " takes, " + std::to_string(SUN_MOST_BIDIRECTIONAL_DEPTH) + ": each path in flight keeps a light vertex and a shadow ray for each, 192 bytes",
+                     "use --integrator path for longer paths");
+  if (s.strategy_t) {
+    const std::string place = "--strategy " + std::to_string(s.strategy_s) + "," + std::to_string(s.strategy_t);
+    if (s.strategy_s + s.strategy_t < 2) throw UsageError(place, "has no edge: there are at least two vertices");
+    if (s.strategy_t == 1 && s.strategy_s == 1) throw UsageError(place, "is not used: light that is seen directly is found by 0,2");
+    if (s.strategy_s + s.strategy_t > s.max_depth + 2) throw UsageError(place, "scatters " + std::to_string(s.strategy_s + s.strategy_t - 2) + " times, more than --max-depth allows");
+  } else if (s.unweighted) {
+    throw UsageError("--unweighted", "is for one strategy: all of them without weights would count light many times", "add --strategy S,T");
+  }
+}
+
 void check_settings(const Plan &plan, const RenderSettings &settings) {
   const RenderSettings plain;
   if (settings.end_on_light) check_flag(plan, "--end-on-light");
@@ -54,6 +74,10 @@ void check_settings(const Plan &plan, const RenderSettings &settings) {
   if (settings.nee_first) check_flag(plan, "--nee");
   if (settings.absorption != plain.absorption) check_flag(plan, "--absorption");
   if (settings.double_count) check_flag(plan, "--double-count");
+  if (settings.balance) check_flag(plan, "--heuristic");
+  if (settings.strategy_t) check_flag(plan, "--strategy");
+  if (settings.unweighted) check_flag(plan, "--unweighted");
+  if (plan.bidirectional) check_bidirectional(plan, settings);
   if (settings.light_samples < 1 || settings.light_samples > SUN_MOST_LIGHT_SAMPLES)
     throw UsageError("--light-samples", "is from 1 to " + std::to_string(SUN_MOST_LIGHT_SAMPLES));
   if (settings.indirect_samples != plain.indirect_samples) check_flag(plan, "--indirect-samples");
@@ -94,15 +118,20 @@ void check_plan(const Plan &plan) {
   const auto demand = [&](bool holds, const char *what) {
     if (!holds) throw Error("integrator " + plan.name, what);
   };
-  for (const Stage stage : {Stage::gather_paths, Stage::generate, Stage::intersect, Stage::shade}) demand(has(stage), "a walk gathers, generates, intersects and shades");
-  demand(at(Stage::gather_paths) < at(Stage::generate) && at(Stage::generate) < at(Stage::intersect) && at(Stage::intersect) < at(Stage::shade),
+  // What begins paths, what shades them and what traces their shadow rays goes by other names where there are light subpaths.
+  const Stage begin = plan.bidirectional ? Stage::emit : Stage::generate, shade = plan.bidirectional ? Stage::connect : Stage::shade;
+  const Stage occlude = plan.bidirectional ? Stage::occlude_all : Stage::occlude;
+  for (const Stage stage : {Stage::gather_paths, begin, Stage::intersect, shade}) demand(has(stage), "a walk gathers, begins paths, intersects and shades");
+  demand(at(Stage::gather_paths) < at(begin) && at(begin) < at(Stage::intersect) && at(Stage::intersect) < at(shade),
          "its stages stand in an order in which a queue is read before it is filled");
-  demand(has(Stage::occlude) == plan.direct && has(Stage::gather_shadow_rays) == plan.direct, "shadow rays are sent and traced, or neither");
+  demand(has(Stage::deposit) == plan.bidirectional, "light subpaths are begun and walked, or neither");
+  if (plan.bidirectional) demand(at(Stage::intersect) < at(Stage::deposit) && at(Stage::deposit) < at(Stage::gather_shadow_rays), "deposit stands between intersect and the shadow rays");
+  demand(has(occlude) == plan.direct && has(Stage::gather_shadow_rays) == plan.direct, "shadow rays are sent and traced, or neither");
   if (plan.direct)
-    demand(at(Stage::shade) < at(Stage::gather_shadow_rays) && at(Stage::gather_shadow_rays) < at(Stage::occlude), "shadow rays are traced before they are there");
-  if (has(Stage::first_hit)) demand(at(Stage::intersect) < at(Stage::first_hit) && at(Stage::first_hit) < at(Stage::shade), "first_hit stands between intersect and shade");
+    demand(at(shade) < at(Stage::gather_shadow_rays) && at(Stage::gather_shadow_rays) < at(occlude), "shadow rays are traced before they are there");
+  if (has(Stage::first_hit)) demand(at(Stage::intersect) < at(Stage::first_hit) && at(Stage::first_hit) < at(shade), "first_hit stands between intersect and shade");
   if (has(Stage::branch)) demand(plan.walk.back() == Stage::branch, "branch stands at the end: it looks at what has ended");
-  if (has(Stage::roulette)) demand(at(Stage::shade) < at(Stage::roulette), "roulette stands behind shade");
+  if (has(Stage::roulette)) demand(at(shade) < at(Stage::roulette), "roulette stands behind what shades");
 }
 
 }  // namespace sunstone

@@ -8,7 +8,7 @@
 namespace sunstone {
 
 // What one step of a walk may run, in the order of a plan. `gather_*` make a dense queue for the stage behind them.
-enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch };
+enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch, emit, deposit, connect, occlude_all };
 
 struct RenderSettings;
 
@@ -21,6 +21,7 @@ struct Plan {
   std::vector<std::string> refuses;  // emitters that no path of it can meet: "point", "spot", "directional"
   std::vector<std::string> takes;    // flags of its own
   std::string leaves_out;            // light that it does not follow, and who does
+  bool bidirectional = false;        // slots walk a light subpath first: shared/bidirectional.h
 };
 
 std::span<const Plan> integrators();

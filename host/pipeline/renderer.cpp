@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "shared/bidirectional.h"
 
 namespace sunstone {
 
@@ -32,12 +33,16 @@ std::vector<Tile> split(const RenderSettings &s, std::size_t bytes_a_pixel, std:
   return tiles;
 }
 
-unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths, unsigned light_samples, unsigned branch_records) {
-  unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : 1u << 14;  // on CPUs the pool stays in the caches
+unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths, unsigned light_samples, unsigned branch_records, unsigned light_vertices) {
+  // On CPUs the pool stays in the caches, light vertices included.
+  unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : light_vertices ? 1u << 12 : 1u << 14;
   constexpr unsigned most_shadow_rays = 1u << 22;  // 256 MiB of them
   if (!tuning.pool) pool = static_cast<unsigned>(std::min<std::size_t>(pool, std::min<std::size_t>(most_shadow_rays, info.max_allocation / sizeof(kernel::ShadowRay)) / light_samples));
   constexpr std::size_t most_branch_bytes = std::size_t(1) << 28;
   if (!tuning.pool && branch_records) pool = static_cast<unsigned>(std::min<std::size_t>(pool, std::min(most_branch_bytes, info.max_allocation) / (std::size_t(64) * branch_records)));
+  constexpr std::size_t most_light_vertices = std::size_t(1) << 28;  // bytes
+  if (!tuning.pool && light_vertices)
+    pool = static_cast<unsigned>(std::min<std::size_t>(pool, std::min(most_light_vertices, info.max_allocation) / (std::size_t(SUN_LIGHT_VERTEX_RECORDS) * 64 * light_vertices)));
   if (!tuning.pool && paths < pool) pool = static_cast<unsigned>(std::max<std::uint64_t>(paths, 16));
   return std::max(16u, (pool + 15) / 16 * 16);
 }
@@ -134,12 +139,16 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   frame.sampling = settings.sampling == Sampling::uniform ? SUN_SAMPLING_UNIFORM : settings.sampling == Sampling::cosine ? SUN_SAMPLING_COSINE : SUN_SAMPLING_BSDF;
   frame.light_samples = settings.light_samples;
   frame.indirect_samples = settings.indirect_samples;
+  if (settings.balance) frame.flags |= SUN_FRAME_BALANCE;
+  if (settings.unweighted) frame.flags |= SUN_FRAME_UNWEIGHTED;
+  frame.strategy_s = settings.strategy_t ? settings.strategy_s : SUN_NONE;
+  frame.strategy_t = settings.strategy_t ? settings.strategy_t : SUN_NONE;
   frame.absorption = settings.absorption;
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
 
   for (const Stage stage : s.plan.walk) {
     const bool layers = s.film.layers.size() > SUN_LAYER_FIRST_OPTIONAL + frame.bounce_layers, lit = frame.emitter_count > 0;
-    if (stage == Stage::first_hit ? layers : stage == Stage::branch ? branches(settings) : stage == Stage::gather_shadow_rays || stage == Stage::occlude ? lit : true) s.walk.push_back(stage);
+    if (stage == Stage::first_hit ? layers : stage == Stage::branch ? branches(settings) : stage == Stage::gather_shadow_rays || stage == Stage::occlude || stage == Stage::occlude_all ? lit : true) s.walk.push_back(stage);
   }
 
   const std::size_t bytes_a_pixel = s.film.layers.size() * SUN_FILM_CHANNELS * SUN_FILM_BINS * sizeof(std::int64_t);
@@ -147,10 +156,18 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   s.tiles = split(settings, bytes_a_pixel, std::min(device.info().max_allocation, room));
   if (branches(settings) && !programs.variant.branching) throw std::logic_error("programs without branches");
   const unsigned branch_records = programs.variant.branching ? SUN_BRANCH_RECORDS(settings.max_depth) : 0;
-  frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16, settings.light_samples, branch_records);
+  if (s.plan.bidirectional && s.tiles.size() > 1)
+    throw Error("film", fmt::format("a picture of {}x{} does not fit on the device in one piece, and the light subpaths of --integrator {} may light any pixel", settings.width, settings.height, s.plan.name),
+                "use a smaller --size, fewer layers of --aov, or another --device");
+  if (s.plan.bidirectional && !programs.variant.bidirectional) throw std::logic_error("programs without light subpaths");
+  // An eye vertex sends a shadow ray to an emitter and to each light vertex.
+  const unsigned light_vertices = s.plan.bidirectional ? std::max(2u, settings.max_depth) - 1 : 0, shadow_rays = s.plan.bidirectional ? light_vertices + 1 : settings.light_samples;
+  frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16, shadow_rays, branch_records, light_vertices);
   if (static_cast<std::uint64_t>(frame.pool) * branch_records * 16 > std::numeric_limits<kernel::uint>::max())
     throw UsageError("--pool " + std::to_string(frame.pool), "with the branches of --max-depth " + std::to_string(settings.max_depth) + " has more words than 32 bits count", "use a smaller pool");
-  s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk, settings.light_samples, branch_records);
+  if (static_cast<std::uint64_t>(frame.pool) * light_vertices * SUN_LIGHT_VERTEX_RECORDS * 16 > SUN_NONE)
+    throw UsageError("--pool " + std::to_string(frame.pool), "has more light vertices than 32 bits count", "use a smaller pool, or a smaller --max-depth");
+  s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk, shadow_rays, branch_records, light_vertices);
   s.device_frame = Buffer<kernel::Frame>(device, 1, "frame");
   s.device_film = Buffer<std::int64_t>(
       device, s.film.layers.size() * static_cast<std::size_t>(s.tiles[0].width) * static_cast<std::size_t>(s.tiles[0].height) * SUN_FILM_CHANNELS * SUN_FILM_BINS, "film");
@@ -325,7 +342,7 @@ void StageProbe::run(Stage stage) { state_->runner->run(stage); }
 StageState StageProbe::save() const {
   const Pool &pool = *state_->render.pool;
   return {pool.paths.download(), pool.status.download(), {pool.rays[0].download(), pool.rays[1].download()}, pool.shadow_queue.download(),
-          pool.counts.download(), pool.hits.download(), pool.shadow_rays.download(), state_->runner->current()};
+          pool.counts.download(), pool.walks.download(), pool.light_vertices.download(), pool.hits.download(), pool.shadow_rays.download(), state_->runner->current()};
 }
 
 void StageProbe::restore(const StageState &s) {
@@ -335,6 +352,8 @@ void StageProbe::restore(const StageState &s) {
   for (int i = 0; i < 2; i++) pool.rays[i].upload(s.rays[i]);
   pool.shadow_queue.upload(s.shadow_queue);
   pool.counts.upload(s.counts);
+  pool.walks.upload(s.walks);
+  pool.light_vertices.upload(s.light_vertices);
   pool.hits.upload(s.hits);
   pool.shadow_rays.upload(s.shadow_rays);
   state_->runner->set_current(s.current);
@@ -343,7 +362,7 @@ void StageProbe::restore(const StageState &s) {
 std::size_t StageProbe::items(Stage stage) const {
   const std::vector<kernel::uint> counts = state_->render.pool->counts.download();
   if (stage == Stage::gather_paths) return state_->render.pool->slots;
-  if (stage == Stage::occlude) {  // every ray of the slots that have any
+  if (stage == Stage::occlude || stage == Stage::occlude_all) {  // every ray of the slots that have any
     const std::vector<kernel::uint> queue = state_->render.pool->shadow_queue.download(), status = state_->render.pool->status.download();
     std::size_t rays = 0;
     for (std::size_t i = 0; i < counts[SUN_COUNT_SHADOW]; i++) rays += (status[queue[i]] & SUN_STATUS_SHADOWS) >> SUN_STATUS_SHADOWS_SHIFT;
@@ -359,7 +378,7 @@ std::size_t Renderer::scene_bytes() const { return state_->scene.bytes; }
 unsigned Renderer::pool_slots() const { return state_->pool->slots; }
 std::size_t Renderer::pool_bytes() const {
   const Pool &p = *state_->pool;
-  return p.paths.bytes() + p.status.bytes() + p.hits.bytes() + p.shadow_rays.bytes() + p.branches.bytes() + 2 * p.rays[0].bytes() + p.shadow_queue.bytes();
+  return p.paths.bytes() + p.status.bytes() + p.hits.bytes() + p.shadow_rays.bytes() + p.branches.bytes() + 2 * p.rays[0].bytes() + p.shadow_queue.bytes() + p.walks.bytes() + p.light_vertices.bytes();
 }
 
 std::map<std::string, std::string> film_settings(const RenderSettings &s, const kernel::Camera &camera) {
@@ -382,6 +401,9 @@ std::map<std::string, std::string> film_settings(const RenderSettings &s, const 
     if (flag == "--indirect-samples") all[name] = std::to_string(s.indirect_samples);
     if (flag == "--nee") all[name] = s.nee_first ? "first" : "every";
     if (flag == "--absorption") all[name] = s.absorption < 0 ? "by throughput" : fmt::format("{}", s.absorption);
+    if (flag == "--heuristic") all[name] = s.balance ? "balance" : "power";
+    if (flag == "--strategy") all[name] = s.strategy_t ? fmt::format("{},{}", s.strategy_s, s.strategy_t) : "all";
+    if (flag == "--unweighted") all[name] = s.unweighted ? "yes" : "no";
     if (flag == "--double-count") all[name] = s.double_count ? "yes: wrong on purpose, direct light counts twice" : "no";
   }
   return all;

@@ -28,7 +28,7 @@ struct RenderProgress {
 
 // A copy of everything on the device that stages change, the film apart.
 struct StageState {
-  std::vector<kernel::uint> paths, status, rays[2], shadow_queue, counts;
+  std::vector<kernel::uint> paths, status, rays[2], shadow_queue, counts, walks, light_vertices;
   std::vector<kernel::Hit> hits;
   std::vector<kernel::ShadowRay> shadow_rays;
   int current = 0;

@@ -37,6 +37,9 @@ struct RenderSettings {
   bool nee_first = false;      // shadow rays from the camera ray's hit alone
   float absorption = -1;       // chance to end at each scattering; negative: by the throughput
   bool double_count = false;   // wrong on purpose
+  bool balance = false;        // bidirectional weights: the balance heuristic; else the power heuristic
+  unsigned strategy_s = 0, strategy_t = 0;  // vertices from the light's side and from the eye's: this strategy alone; 0, 0: all
+  bool unweighted = false;     // it, as if there were no other
   LayerChoice layers;
 };
 

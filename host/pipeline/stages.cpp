@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "shared/bidirectional.h"
 #include "shared/options.h"
 #include "shared/path_words.h"
 
@@ -19,6 +20,7 @@ Switches tracing(const Variant &v) {
   switches["LANES"] = 1;
   switches["SUN_LAYOUT"] = v.layout == Layout::binary ? SUN_LAYOUT_BINARY : v.layout == Layout::wide8 ? SUN_LAYOUT_WIDE8 : SUN_LAYOUT_WIDE16;
   switches["SUN_PASSABLE"] = v.passable;
+  switches["SUN_BIDIRECTIONAL"] = v.bidirectional;
   return switches;
 }
 
@@ -33,6 +35,12 @@ Switches on_paths(const Variant &v) {
 std::vector<std::string> stages_on_paths(const Variant &v) {
   std::vector<std::string> stages = {"generate", "first_hit", "shade", "roulette", "compact"};
   if (v.branching) stages.push_back("branch");
+  if (v.bidirectional) stages.insert(stages.end(), {"emit", "deposit", "connect"});
+  return stages;
+}
+std::vector<std::string> stages_on_rays(const Variant &v) {
+  std::vector<std::string> stages = {"intersect", "occlude"};
+  if (v.bidirectional) stages.push_back("occlude_all");
   return stages;
 }
 
@@ -68,9 +76,9 @@ Layout device_layout(const DeviceInfo &info) {
 Programs::Programs(const Device &device, const Variant &v, const CompileProgress &progress)
     : variant(v),
       paths(build_stages(device, "paths", stages_on_paths(v), on_paths(v), 0, progress)),
-      rays(build_stages(device, "rays", {"intersect", "occlude"}, tracing(v), 1, progress)) {}
+      rays(build_stages(device, "rays", stages_on_rays(v), tracing(v), 1, progress)) {}
 
-Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light_samples_, unsigned branch_records)
+Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light_samples_, unsigned branch_records, unsigned light_vertices_)
     : slots(slots_),
       chunks((slots_ + chunk - 1) / chunk),
       light_samples(light_samples_),
@@ -79,6 +87,8 @@ Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light
       hits(device, slots, "hits"),
       shadow_rays(device, static_cast<std::size_t>(slots) * light_samples, "shadow rays"),
       branches(device, std::max<std::size_t>(1, static_cast<std::size_t>(slots) * branch_records * 16), "branches"),
+      walks(device, light_vertices_ ? static_cast<std::size_t>(slots) * SUN_WALK_WORDS : 0, "walks"),
+      light_vertices(device, static_cast<std::size_t>(slots) * light_vertices_ * SUN_LIGHT_VERTEX_RECORDS * 16, "light vertices"),
       rays{Buffer<kernel::uint>(device, slots, "ray queue"), Buffer<kernel::uint>(device, slots, "ray queue")},
       shadow_queue(device, slots, "shadow queue"),
       chunk_counts(device, chunks, "queue chunks"),
@@ -107,6 +117,11 @@ StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool
       scan_(p.paths, "scan"),
       scatter_(p.paths, "scatter_chunks") {
   if (p.variant.branching) branch_.emplace(p.paths, "branch");
+  if (!p.variant.bidirectional) return;
+  emit_.emplace(p.paths, "emit");
+  deposit_.emplace(p.paths, "deposit");
+  connect_.emplace(p.paths, "connect");
+  occlude_all_.emplace(p.rays, "occlude_all");
 }
 
 void StageRunner::gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out) {
@@ -142,6 +157,23 @@ void StageRunner::run(Stage stage) {
         occlude_.run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.vertices, scene_.extras,
                    scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.shadow_rays,
                    pool_.shadow_queue, pool_.counts, film_, number * pool_.slots);
+      break;
+    case Stage::emit:
+      emit_->run(bundles, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2],
+                 scene_.pages[3], pool_.paths, pool_.walks, pool_.status, rays, pool_.counts);
+      break;
+    case Stage::deposit:
+      deposit_->run(bundles, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2],
+                    scene_.pages[3], pool_.paths, pool_.walks, pool_.light_vertices, pool_.status, pool_.hits, pool_.shadow_rays, rays, pool_.counts);
+      break;
+    case Stage::connect:
+      connect_->run(bundles, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2],
+                    scene_.pages[3], pool_.paths, pool_.walks, pool_.light_vertices, pool_.status, pool_.hits, pool_.shadow_rays, rays, pool_.counts, film_);
+      break;
+    case Stage::occlude_all:
+      occlude_all_->run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.vertices, scene_.extras,
+                        scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.shadow_rays,
+                        pool_.shadow_queue, pool_.status, pool_.counts, film_);
       break;
     case Stage::roulette: roulette_.run(bundles, frame_, pool_.paths, pool_.status, pool_.branches, rays, pool_.counts); break;
     case Stage::branch: branch_->run(bundles, frame_, pool_.paths, pool_.status, pool_.hits, pool_.branches, rays, pool_.counts); break;

@@ -23,6 +23,7 @@ struct Variant {
   unsigned chunk = 1024;
   bool passable = true, specular = true, textures = true;
   bool branching = false;
+  bool bidirectional = false;  // has the stages of light subpaths
   bool operator==(const Variant &) const = default;
 };
 
@@ -44,13 +45,15 @@ struct Programs {
 
 // Paths and queues of one pool.
 struct Pool {
-  Pool(const Device &device, unsigned slots, unsigned chunk, unsigned light_samples, unsigned branch_records);
+  Pool(const Device &device, unsigned slots, unsigned chunk, unsigned light_samples, unsigned branch_records, unsigned light_vertices);
   unsigned slots, chunks, light_samples;
   Buffer<kernel::uint> paths;       // SUN_PATH_WORDS a slot
   Buffer<kernel::uint> status;
   Buffer<kernel::Hit> hits;
   Buffer<kernel::ShadowRay> shadow_rays;  // light_samples times the slots: the first ray of each slot, then the second of each ...
   Buffer<kernel::uint> branches;    // branch_records of 16 words a slot, where vertices branch
+  Buffer<kernel::uint> walks;       // SUN_WALK_WORDS a slot, where there are light vertices
+  Buffer<kernel::uint> light_vertices;  // light_vertices times the slots, likewise
   Buffer<kernel::uint> rays[2];     // the ray queue and its successor
   Buffer<kernel::uint> shadow_queue;
   Buffer<kernel::uint> chunk_counts;
@@ -73,6 +76,7 @@ class StageRunner {
   const Buffer<std::int64_t> &film_;
   unsigned lanes_;
   int current_ = 0;  // which of pool.rays is the queue
+  std::optional<Kernel> emit_, deposit_, connect_, occlude_all_;
   Kernel generate_, intersect_, first_hit_, shade_, occlude_, roulette_, count_, scan_, scatter_;
   std::optional<Kernel> branch_;  // where vertices branch
 };

@@ -7,6 +7,7 @@
 #include "math/elementary.h"
 #include "math/record.h"
 #include "math/vector.h"
+#include "math/warp.h"
 #include "shared/emitter.h"
 
 SUN_NAMESPACE_BEGIN
@@ -43,14 +44,26 @@ SUN_FN EmitterChoice choose_emitter(const SUN_GLOBAL Emitter *emitters, uint cou
   return choice;
 }
 
+// Light leaves a point evenly to all sides, and a spot evenly within its cone: the density by solid angle.
+SUN_FN real light_cone_height(uint_n kind, real cos_outer) { return kind == (uint_n)(SUN_LIGHT_SPOT) ? max_real(1.0f - cos_outer, (real)(1e-6f)) : (real)(2.0f); }
+SUN_FN real light_cone_pdf(uint_n kind, real cos_outer) { return SUN_INV_TWO_PI / light_cone_height(kind, cos_outer); }
+
 // What a punctual light sends to a point (KHR_lights_punctual).
 typedef struct LightSample {
   vec3 direction;  // to the light, unit length
   real distance;   // SUN_BEYOND for directional lights
   vec3 radiance;   // irradiance on a surface that faces the light; 0 outside a spot's cone
+  real spread;     // density by solid angle with which light_emission sends light here; 1 for directional lights, whose density is by area
 } LightSample;
 
-SUN_FN LightSample light_sample(const SUN_GLOBAL Light *lights, uint_n light, vec3 position) {
+// LANES records.
+typedef struct LightLanes {
+  uint_n kind;
+  vec3 place, axis, intensity;
+  real cos_outer, cos_inner;
+} LightLanes;
+
+SUN_FN LightLanes load_lights(const SUN_GLOBAL Light *lights, uint_n light) {
   uint at[LANES], lane_kind[LANES];
   float field[11][LANES];
   LANES_STORE(light, at);
@@ -65,28 +78,62 @@ SUN_FN LightSample light_sample(const SUN_GLOBAL Light *lights, uint_n light, ve
     field[10][lane] = l->cos_inner;
     lane_kind[lane] = l->kind;
   }
-  uint_n kind = LANES_LOAD(lane_kind);
-  vec3 place = make_vec3(LANES_LOAD(field[0]), LANES_LOAD(field[1]), LANES_LOAD(field[2]));
-  vec3 axis = make_vec3(LANES_LOAD(field[3]), LANES_LOAD(field[4]), LANES_LOAD(field[5]));
-  vec3 intensity = make_vec3(LANES_LOAD(field[6]), LANES_LOAD(field[7]), LANES_LOAD(field[8]));
-  real cos_outer = LANES_LOAD(field[9]), cos_inner = LANES_LOAD(field[10]);
+  LightLanes lanes;
+  lanes.kind = LANES_LOAD(lane_kind);
+  lanes.place = make_vec3(LANES_LOAD(field[0]), LANES_LOAD(field[1]), LANES_LOAD(field[2]));
+  lanes.axis = make_vec3(LANES_LOAD(field[3]), LANES_LOAD(field[4]), LANES_LOAD(field[5]));
+  lanes.intensity = make_vec3(LANES_LOAD(field[6]), LANES_LOAD(field[7]), LANES_LOAD(field[8]));
+  lanes.cos_outer = LANES_LOAD(field[9]);
+  lanes.cos_inner = LANES_LOAD(field[10]);
+  return lanes;
+}
 
-  mask placed = kind != (uint_n)(SUN_LIGHT_DIRECTIONAL);
-  vec3 to = sub3(place, position);
+// Share of a spot's intensity that leaves under this cosine to its axis: the ramp between the cosines of its angles, squared; a ramp narrower than 0.001
+// counts as that. 1 for other lights.
+SUN_FN real spot_share(const LightLanes *l, real cosine) {
+  real ramp = (cosine - l->cos_outer) / max_real(l->cos_inner - l->cos_outer, (real)(0.001f));
+  ramp = clamp_real(ramp, (real)(0.0f), (real)(1.0f));
+  return l->kind == (uint_n)(SUN_LIGHT_SPOT) ? ramp * ramp : (real)(1.0f);
+}
+
+SUN_FN LightSample light_sample(const SUN_GLOBAL Light *lights, uint_n light, vec3 position) {
+  LightLanes l = load_lights(lights, light);
+  mask placed = l.kind != (uint_n)(SUN_LIGHT_DIRECTIONAL);
+  vec3 to = sub3(l.place, position);
   real squared = dot3(to, to);
   mask apart = squared > 0.0f;
   real safe = apart ? squared : (real)(1.0f);
   real distance = sqrt(safe);
   LightSample sample;
-  sample.direction = select3(placed, scale3(to, 1.0f / distance), negate3(axis));
+  sample.direction = select3(placed, scale3(to, 1.0f / distance), negate3(l.axis));
   sample.distance = placed ? (apart ? distance : (real)(0.0f)) : (real)(SUN_BEYOND);
-  // The spot's ramp between the cosines of its angles, squared; a ramp narrower than 0.001 counts as that.
-  real ramp = (-dot3(sample.direction, axis) - cos_outer) / max_real(cos_inner - cos_outer, (real)(0.001f));
-  ramp = clamp_real(ramp, (real)(0.0f), (real)(1.0f));
-  real factor = kind == (uint_n)(SUN_LIGHT_SPOT) ? ramp * ramp : (real)(1.0f);
+  real factor = spot_share(&l, -dot3(sample.direction, l.axis));
   factor = placed ? (apart ? factor / safe : (real)(0.0f)) : factor;
-  sample.radiance = scale3(intensity, factor);
+  sample.radiance = scale3(l.intensity, factor);
+  sample.spread = placed ? light_cone_pdf(l.kind, l.cos_outer) : (real)(1.0f);
   return sample;
+}
+
+// Light that leaves a punctual light.
+typedef struct LightEmission {
+  vec3 origin, direction;
+  vec3 intensity;  // in that direction; irradiance of directional lights
+  real pdf;        // by solid angle
+  mask far;        // directional: no origin, one direction
+} LightEmission;
+
+SUN_FN LightEmission light_emission(const SUN_GLOBAL Light *lights, uint_n light, vec2 u) {
+  LightLanes l = load_lights(lights, light);
+  LightEmission e;
+  e.far = l.kind == (uint_n)(SUN_LIGHT_DIRECTIONAL);
+  vec3 within = square_to_cone(u, light_cone_height(l.kind, l.cos_outer));
+  Frame3 about = frame_of_normal(l.axis);
+  e.direction = select3(e.far, l.axis, normalize3(to_world(&about, within)));
+  e.origin = l.place;
+  real factor = spot_share(&l, dot3(e.direction, l.axis));
+  e.intensity = scale3(l.intensity, factor);
+  e.pdf = light_cone_pdf(l.kind, l.cos_outer);
+  return e;
 }
 
 // Equirectangular coordinates of a unit direction: u wraps and is not reduced, v lies in [0, 1]. `sine` is that of the angle from +y.

@@ -18,6 +18,7 @@ SUN_NAMESPACE_BEGIN
 #define SUN_WANT_ALL 0u
 #define SUN_WANT_OPAQUE 1u    // triangles without SUN_ID_PASSABLE
 #define SUN_WANT_PASSABLE 2u  // triangles with it
+#define SUN_WANT_BOTH_SIDES 3u  // all, those of one side seen from behind too: what light meets, while eyes look through
 
 // Hits count where t < t_max and (t, instance, primitive) > (passed_t, passed_instance, passed_primitive), compared in that order.
 // A new ray has passed_t = 0 and both numbers SUN_NONE, so t > 0; a ray that goes on behind a hit has that hit's, and needs no offset.

@@ -136,6 +136,7 @@ typedef struct Surface {
   vec3 position;         // world
   vec3 normal;           // geometric, unit length, on the ray's side
   Frame3 shading;        // shading frame; its normal is on the ray's side too
+  vec3 unbent;           // that normal before it was bent towards the ray
   real offset;           // of new rays, along `normal`
   real area;             // of the triangle, world
   real cos_front;        // cosine between the front's normal and the way back along the ray: negative from behind
@@ -165,6 +166,17 @@ SUN_FN void surface_coordinates(const Scene *scene, Surface *s, const Corners *c
   }
 }
 #endif
+
+// Seen from behind its shading normal a surface would be black or leak: the normal is bent until wo is just above it.
+SUN_FN vec3 bend_normal(vec3 ns, vec3 wo, vec3 geometric) {
+  real below = dot3(ns, wo);
+  mask bend = below < 1e-3f;
+  if (ANY(bend)) {
+    vec3 bent = normalize3(add3(ns, scale3(wo, 1e-3f - below)));
+    ns = select3(bend, select3(dot3(bent, wo) > 0.0f, bent, geometric), ns);
+  }
+  return ns;
+}
 
 // wo: unit vector back along the ray.
 SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
@@ -233,14 +245,8 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
     }
   }
 #endif
-  // Seen from behind its shading normal a surface would be black or leak: bend the normal until wo is just above it.
-  real below = dot3(ns, wo);
-  mask bend = below < 1e-3f;
-  if (ANY(bend)) {
-    vec3 bent = normalize3(add3(ns, scale3(wo, 1e-3f - below)));
-    ns = select3(bend, select3(dot3(bent, wo) > 0.0f, bent, s.normal), ns);
-  }
-  s.shading = frame_of_normal(ns);
+  s.unbent = ns;
+  s.shading = frame_of_normal(bend_normal(ns, wo, s.normal));
   return s;
 }
 
@@ -346,17 +352,22 @@ SUN_FN Bsdf surface_bsdf(const Scene *scene, const Surface *s, mask wanted) {
   return b;
 }
 
-// What is left of light after `distance` within the solid that the ray leaves here (Beer's law); 1 where it comes from outside.
-SUN_FN vec3 surface_absorption(const Scene *scene, const Surface *s, real distance, mask wanted) {
+// What is left of light after `distance` within a solid of this material (Beer's law).
+SUN_FN vec3 solid_transmittance(const Scene *scene, uint_n material, real distance, mask within) {
   vec3 left = splat3((real)(1.0f));
-  mask within = wanted & !s->front & ((s->material_flags & (uint_n)(SUN_MATERIAL_VOLUME)) != (uint_n)(0));
   if (ANY(within)) {
     vec3 a;
-    GATHER_VEC3(a, scene->materials, s->material, absorption[0]);
+    GATHER_VEC3(a, scene->materials, material, absorption[0]);
     vec3 passed = make_vec3(exp_real(-a.x * distance), exp_real(-a.y * distance), exp_real(-a.z * distance));
     left = select3(within, passed, left);
   }
   return left;
+}
+
+// The same for the solid that the ray leaves here; 1 where it comes from outside.
+SUN_FN vec3 surface_absorption(const Scene *scene, const Surface *s, real distance, mask wanted) {
+  mask within = wanted & !s->front & ((s->material_flags & (uint_n)(SUN_MATERIAL_VOLUME)) != (uint_n)(0));
+  return solid_transmittance(scene, s->material, distance, within);
 }
 
 SUN_NAMESPACE_END

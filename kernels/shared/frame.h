@@ -35,6 +35,8 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 #define SUN_FRAME_WEIGHTED 8u      // shadow rays and emitters that are hit share their worth by the power heuristic; else each light has one of the two
 #define SUN_FRAME_FIRST 16u        // shadow rays leave from the camera ray's hit alone
 #define SUN_FRAME_TWICE 32u        // wrong on purpose: emitters that are hit count in full beside shadow rays
+#define SUN_FRAME_BALANCE 256u     // bidirectional weights: the balance heuristic; else the power heuristic
+#define SUN_FRAME_UNWEIGHTED 512u  // each strategy by itself, as if there were no other
 #define SUN_FRAME_END_ON_LIGHT 64u // a path ends on the emitter that it hits
 #define SUN_FRAME_EFFECTS 128u     // rays leave a vertex by effect: what facets reflect and what they transmit, each followed; nothing else is
 
@@ -81,6 +83,7 @@ typedef struct Frame {
   uint light_samples;            // shadow rays a vertex
   float absorption;              // chance to end at each scattering, whatever the throughput; negative: by the throughput
   uint indirect_samples;         // rays that leave a vertex
+  uint strategy_s, strategy_t;   // bidirectional: vertices from the light's side and from the eye's, of the one strategy that counts; SUN_NONE: all
   uint pad;
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);

@@ -44,6 +44,11 @@
 #define SUN_BRANCHING 0
 #endif
 
+// 1 where walks start from the lights too (shared/bidirectional.h).
+#ifndef SUN_BIDIRECTIONAL
+#define SUN_BIDIRECTIONAL 0
+#endif
+
 // 1 where the device has cl_khr_int64_base_atomics; otherwise the film adds two 32-bit words with carry.
 #ifndef SUN_ATOMICS_64
 #define SUN_ATOMICS_64 0

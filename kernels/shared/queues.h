@@ -14,6 +14,8 @@ SUN_NAMESPACE_BEGIN
 #define SUN_STATUS_ENDED 0x00080000u       // the path has just ended and is not counted yet
 #define SUN_STATUS_ENDED_SHIFT 20          // why it ended, below
 #define SUN_STATUS_AGAIN 0x00400000u       // the hit is that of a vertex taken up again, for its next child: no ray is traced
+#define SUN_STATUS_TURN 0x00800000u        // the light subpath has ended: emit begins the eye subpath of the same sample
+#define SUN_STATUS_LIGHT 0x80000000u       // walks the light subpath
 #define SUN_STATUS_SHADOWS 0x7f000000u     // how many shadow rays wait
 #define SUN_STATUS_SHADOWS_SHIFT 24
 #define SUN_ENDED_LIGHT 0

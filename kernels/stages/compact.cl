@@ -24,7 +24,7 @@ __kernel void count_chunks(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uint 
     found += (word & bit) != 0;
     if (bit == SUN_STATUS_SHADOW) shadows += (word & SUN_STATUS_SHADOWS) >> SUN_STATUS_SHADOWS_SHIFT;
     if (bit == SUN_STATUS_ALIVE) {
-      uint alive = (word & (SUN_STATUS_ALIVE | SUN_STATUS_AGAIN)) == SUN_STATUS_ALIVE, deep = (word & SUN_STATUS_DEPTH) != 0;
+      uint alive = (word & (SUN_STATUS_ALIVE | SUN_STATUS_AGAIN)) == SUN_STATUS_ALIVE, deep = (word & (SUN_STATUS_DEPTH | SUN_STATUS_LIGHT)) != 0;
       bounces += alive & deep;
       straight += alive & !deep;
       if (word & SUN_STATUS_ENDED) {

@@ -21,7 +21,7 @@ SUN_BODY void first_hit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, 
   if (first >= length) return;
   QueueLanes lanes = queue_lanes(rays, first, length);
   uint_n word = gather_uint(status, lanes.slot);
-  uint_n done = (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_FIRST_HIT);
+  uint_n done = (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_FIRST_HIT | SUN_STATUS_LIGHT);
   mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0)) & ((word & done) == (uint_n)(0));
   if (!ANY(active)) return;
   Scene opened = open_scene(frame, SCENE_ARGUMENTS);

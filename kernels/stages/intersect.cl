@@ -40,13 +40,14 @@ SUN_BODY void intersect_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, cons
   if (position >= counts[SUN_COUNT_LIVE]) return;
   uint slot = rays[position];
   if (position + SUN_AHEAD < counts[SUN_COUNT_LIVE]) SUN_SOON(path_words + (size_t)rays[position + SUN_AHEAD] * SUN_PATH_WORDS);
-  if ((status[slot] & (SUN_STATUS_ALIVE | SUN_STATUS_AGAIN)) != SUN_STATUS_ALIVE) return;
+  const uint word = status[slot];
+  if ((word & (SUN_STATUS_ALIVE | SUN_STATUS_AGAIN)) != SUN_STATUS_ALIVE) return;
   TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count);
   Paths paths;
   paths.words = (SUN_GLOBAL uint *)path_words;
   paths.pool = frame->pool;
   Ray ray = path_ray(&paths, slot);
-  hits[slot] = closest_hit(&scene, ray, SUN_WANT_ALL);
+  hits[slot] = closest_hit(&scene, ray, SUN_BIDIRECTIONAL && (word & SUN_STATUS_LIGHT) ? SUN_WANT_BOTH_SIDES : SUN_WANT_ALL);
 }
 
 SUN_TRACE_KERNEL void intersect(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, const SUN_GLOBAL Instance *instances,

@@ -53,6 +53,9 @@ SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *pa
   path_store(&paths, lanes.slot, lives, &path);
   uint_n ended = (word & (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_SHADOW | SUN_STATUS_SHADOWS | SUN_STATUS_FIRST_HIT)) |
                  (uint_n)(SUN_STATUS_ENDED | (SUN_ENDED_ABSORBED << SUN_STATUS_ENDED_SHIFT));
+  // A light subpath that ends here leaves the sample its eye subpath.
+  mask light = (word & (uint_n)(SUN_STATUS_LIGHT)) != (uint_n)(0);
+  ended = light ? (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_TURN) : ended;
   store_uint(status, lanes.slot, dies, ended);
 }
 

@@ -8,6 +8,7 @@
 #include "path/contribute.h"
 #include "path/path.h"
 #include "path/queue.h"
+#include "path/shadow_ray.h"
 #if SUN_BRANCHING
 #include "transport/branch.h"
 #endif
@@ -17,15 +18,17 @@
 
 SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, mask stored, const DirectSample *direct, vec3 worth, const Path *path,
                               uint_n depth, uint number) {
-  real t_max = direct->valid ? direct->t_max : (real)(-1.0f);
-  // In the order of shared/queues.h.
-  uint_n words[16] = {bits_of_real(direct->origin.x),    bits_of_real(direct->origin.y),    bits_of_real(direct->origin.z),
-                      bits_of_real(t_max),               bits_of_real(direct->direction.x), bits_of_real(direct->direction.y),
-                      bits_of_real(direct->direction.z), path->pixel,                       bits_of_real(worth.x),
-                      bits_of_real(worth.y),             bits_of_real(worth.z),             path->sample,
-                      depth,                             path->vertex,                      (uint_n)(number),
-                      (uint_n)(0)};
-  store_records((SUN_GLOBAL uint *)shadow_rays, slots, stored, words);
+  ShadowLanes ray;
+  ray.origin = direct->origin;
+  ray.direction = direct->direction;
+  ray.t_max = direct->valid ? direct->t_max : (real)(-1.0f);
+  ray.contribution = worth;
+  ray.pixel = path->pixel;
+  ray.sample = path->sample;
+  ray.depth = depth;
+  ray.vertex = path->vertex;
+  ray.number = (uint_n)(number);
+  shadow_rays_store(shadow_rays, slots, stored, &ray);
 }
 
 SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,

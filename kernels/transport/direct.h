@@ -24,25 +24,18 @@ typedef struct EmitterPoint {
   vec3 target;       // in front of the emitter by its own offset
   vec3 emission;
   real pdf_solid_angle;
+  real spread;       // see EmitterSample
 } EmitterPoint;
 
-SUN_FN EmitterPoint sample_triangle(const Scene *scene, uint_n instance, uint_n primitive, vec2 u, vec3 from, mask wanted) {
-  EmitterPoint point;
+// As much of its surface as its emission needs: position, the front's normal in `normal`, offset, area, material, coordinates. No side is taken yet.
+SUN_FN Surface triangle_point(const Scene *scene, uint_n instance, uint_n primitive, vec2 u) {
   vec2 b = square_to_triangle(u);
-  // The surface of the sampled point, looked at from `from`: its emission is that of a ray that hits it from there.
   Corners c = load_corners(scene, instance, primitive);
-  vec3 position = interpolate3(c.p[0], c.p[1], c.p[2], b.x, b.y);
-  vec3 n = corners_normal(&c);
-  vec3 to = sub3(from, position);
-  real distance2 = dot3(to, to);
-  vec3 wo = normalize3(to);
-  real twice_area = sqrt(dot3(n, n));
-  vec3 front_normal = normalize3(n);
-  real cosine = dot3(front_normal, wo);
   Surface s;
-  s.position = position;
-  s.front = cosine > 0.0f;
-  s.normal = select3(s.front, front_normal, negate3(front_normal));
+  s.position = interpolate3(c.p[0], c.p[1], c.p[2], b.x, b.y);
+  vec3 n = corners_normal(&c);
+  s.area = sqrt(dot3(n, n)) * 0.5f;
+  s.normal = normalize3(n);
   s.offset = surface_offset(&c);
   s.material = c.material;
   GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
@@ -51,19 +44,51 @@ SUN_FN EmitterPoint sample_triangle(const Scene *scene, uint_n instance, uint_n 
 #if SUN_TEXTURES
   surface_coordinates(scene, &s, &c, b.x, b.y);
 #endif
-  point.emission = surface_emission(scene, &s, wanted);
-  // Part of an emitter that is not there (alpha) emits as much as a ray that meets it by chance would find.
-  point.emission = scale3(point.emission, surface_alpha(scene, &s, wanted));
-  real reach = fabs(cosine) * twice_area * 0.5f;
+  return s;
+}
+
+// What it emits to the side that `front` tells. Part of an emitter that is not there (alpha) emits as much as a ray that meets it by chance would find.
+SUN_FN vec3 point_emission(const Scene *scene, Surface *s, mask front, mask wanted) {
+  s->front = front;
+  s->normal = select3(front, s->normal, negate3(s->normal));
+  return scale3(surface_emission(scene, s, wanted), surface_alpha(scene, s, wanted));
+}
+
+// Share of a triangle's light that leaves by one side.
+SUN_FN real side_share(const Surface *s) {
+  mask both = (s->material_flags & (uint_n)(SUN_MATERIAL_DOUBLE_SIDED)) != (uint_n)(0);
+  return both ? (real)(0.5f) : (real)(1.0f);
+}
+
+SUN_FN EmitterPoint sample_triangle(const Scene *scene, uint_n instance, uint_n primitive, vec2 u, vec3 from, mask wanted) {
+  EmitterPoint point;
+  // Looked at from `from`: its emission is that of a ray that hits it from there.
+  Surface s = triangle_point(scene, instance, primitive, u);
+  vec3 to = sub3(from, s.position);
+  real distance2 = dot3(to, to);
+  real cosine = dot3(s.normal, normalize3(to));
+  point.emission = point_emission(scene, &s, cosine > 0.0f, wanted);
+  real reach = fabs(cosine) * s.area;
   mask usable = wanted & (reach > 0.0f) & (distance2 > 0.0f);
   point.pdf_solid_angle = usable ? distance2 / (usable ? reach : (real)(1.0f)) : (real)(0.0f);
-  point.target = add3(position, scale3(s.normal, s.offset));
+  point.spread = usable ? side_share(&s) * fabs(cosine) * SUN_INV_PI / (usable ? distance2 : (real)(1.0f)) : (real)(0.0f);
+  point.target = add3(s.position, scale3(s.normal, s.offset));
   return point;
 }
 
-// A shadow ray for LANES surfaces. `throughput` is not in it. The choice and the point take SUN_DIM_EMITTER and SUN_DIM_EMITTER_POINT of this vertex.
-SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, real u_choice, vec2 u_point, mask active) {
-  DirectSample direct;
+// A point of one emitter, as it is seen from a surface.
+typedef struct EmitterSample {
+  vec3 emission;      // radiance; of lights: irradiance on a surface that faces them
+  vec3 target;        // of triangles, and of lights that have a place
+  vec3 direction;     // there, unit length
+  real pdf;           // of the choice and the point, by solid angle; of lights, which are deltas, of the choice
+  real spread;        // density, per area that faces it, with which a light subpath that starts there arrives here: transport/emit.h
+  mask has_target, is_light;
+} EmitterSample;
+
+// The choice and the point take SUN_DIM_EMITTER and SUN_DIM_EMITTER_POINT of this vertex.
+SUN_FN EmitterSample sample_emitter(const Scene *scene, const Surface *s, real u_choice, vec2 u_point, mask active) {
+  EmitterSample sample;
   const SUN_GLOBAL Frame *frame = scene->frame;
   vec3 black = splat3((real)(0.0f));
   EmitterChoice choice = choose_emitter(scene->emitters, frame->emitter_count, u_choice);
@@ -72,9 +97,9 @@ SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lo
   mask is_environment = active & (choice.kind == (uint_n)(SUN_EMITTER_ENVIRONMENT));
 
   vec3 emission = black;
-  vec3 target = s->position;          // of triangles and of lights that have a place
-  vec3 direction = s->shading.normal; // unit length, from the surface
-  real pdf = (real)(0.0f);            // solid angle; 1 for lights, which are deltas
+  vec3 target = s->position;
+  vec3 direction = s->shading.normal;
+  real pdf = (real)(0.0f), spread = (real)(0.0f);
   mask has_target = is_triangle;
 
   if (ANY(is_triangle)) {
@@ -82,6 +107,7 @@ SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lo
     emission = select3(is_triangle, point.emission, emission);
     target = select3(is_triangle, point.target, target);
     pdf = is_triangle ? point.pdf_solid_angle : pdf;
+    spread = is_triangle ? point.spread : spread;
     direction = select3(is_triangle, normalize3(sub3(point.target, s->position)), direction);
   }
   if (ANY(is_light)) {
@@ -92,6 +118,7 @@ SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lo
     has_target = has_target | placed;
     direction = select3(is_light, light.direction, direction);
     pdf = is_light ? (real)(1.0f) : pdf;
+    spread = is_light ? light.spread / (placed ? light.distance * light.distance : (real)(SUN_PI * frame->scene_radius * frame->scene_radius)) : spread;
   }
   if (ANY(is_environment)) {
 #if SUN_BRANCHING
@@ -99,37 +126,57 @@ SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lo
     mask anywhere = (frame->flags & SUN_FRAME_EFFECTS) ? u_point.x >= 0.5f : is_environment & !is_environment;
     if (frame->flags & SUN_FRAME_EFFECTS) u_point.x = 2.0f * u_point.x - (anywhere ? (real)(1.0f) : (real)(0.0f));
 #endif
-    EnvironmentSample sample = environment_sample(&frame->environment, scene->environment_cdf, u_point.x, u_point.y);
+    EnvironmentSample sky = environment_sample(&frame->environment, scene->environment_cdf, u_point.x, u_point.y);
 #if SUN_BRANCHING
     if (frame->flags & SUN_FRAME_EFFECTS) {
-      sample.direction = select3(anywhere, square_to_uniform_sphere(u_point), sample.direction);
-      sample.pdf = 0.5f * environment_pdf(&frame->environment, scene->environment_cdf, sample.direction) + 0.5f * square_to_uniform_sphere_pdf();
+      sky.direction = select3(anywhere, square_to_uniform_sphere(u_point), sky.direction);
+      sky.pdf = 0.5f * environment_pdf(&frame->environment, scene->environment_cdf, sky.direction) + 0.5f * square_to_uniform_sphere_pdf();
     }
 #endif
-    vec3 radiance = environment_radiance(&frame->environment, scene->environment_texels, sample.direction);
+    vec3 radiance = environment_radiance(&frame->environment, scene->environment_texels, sky.direction);
     emission = select3(is_environment, radiance, emission);
-    direction = select3(is_environment, sample.direction, direction);
-    pdf = is_environment ? sample.pdf : pdf;
+    direction = select3(is_environment, sky.direction, direction);
+    pdf = is_environment ? sky.pdf : pdf;
+    spread = is_environment ? (real)(1.0f / (SUN_PI * frame->scene_radius * frame->scene_radius)) : spread;
   }
+  sample.emission = emission;
+  sample.target = target;
+  sample.direction = direction;
+  sample.pdf = pdf * choice.pmf;
+  sample.spread = spread;
+  sample.has_target = has_target;
+  sample.is_light = is_light;
+  return sample;
+}
 
-  pdf = pdf * choice.pmf;
-  mask valid = active & (pdf > 0.0f) & (max_of3(emission) > 0.0f);
+// The ray of a sample.
+SUN_FN void direct_ray(const Surface *s, const EmitterSample *sample, DirectSample *direct) {
+  direct->origin = surface_origin(s, sample->direction);
+  direct->direction = select3(sample->has_target, sub3(sample->target, direct->origin), sample->direction);
+  direct->t_max = sample->has_target ? (real)(1.0f) : (real)(SUN_FAR);
+}
+
+// A shadow ray for LANES surfaces. `throughput` is not in it.
+SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, real u_choice, vec2 u_point, mask active) {
+  DirectSample direct;
+  const SUN_GLOBAL Frame *frame = scene->frame;
+  vec3 black = splat3((real)(0.0f));
+  EmitterSample sample = sample_emitter(scene, s, u_choice, u_point, active);
+  mask valid = active & (sample.pdf > 0.0f) & (max_of3(sample.emission) > 0.0f);
   direct.contribution = black;
   if (ANY(valid)) {
-    vec3 wi_local = to_local(&s->shading, direction);
+    vec3 wi_local = to_local(&s->shading, sample.direction);
     BsdfEval eval = lobes_eval(lobes, scene->tables, wo_local, wi_local);
     // The true side has to agree with the shading side, or light leaks through.
-    mask same_side = (dot3(direction, s->normal) > 0.0f) == (wi_local.z > 0.0f);
+    mask same_side = (dot3(sample.direction, s->normal) > 0.0f) == (wi_local.z > 0.0f);
     valid = valid & same_side & (max_of3(eval.f_cos) > 0.0f);
     // A light is a delta: no ray finds it by chance, so it keeps its whole weight.
     real weight = (real)(1.0f);
-    if (frame->flags & SUN_FRAME_WEIGHTED) weight = is_light ? weight : power_heuristic(pdf, eval.pdf);
-    real scale = valid ? weight / (valid ? pdf : (real)(1.0f)) : (real)(0.0f);
-    direct.contribution = select3(valid, scale3(mul3(eval.f_cos, emission), scale), black);
+    if (frame->flags & SUN_FRAME_WEIGHTED) weight = sample.is_light ? weight : power_heuristic(sample.pdf, eval.pdf);
+    real scale = valid ? weight / (valid ? sample.pdf : (real)(1.0f)) : (real)(0.0f);
+    direct.contribution = select3(valid, scale3(mul3(eval.f_cos, sample.emission), scale), black);
   }
-  direct.origin = surface_origin(s, direction);
-  direct.direction = select3(has_target, sub3(target, direct.origin), direction);
-  direct.t_max = has_target ? (real)(1.0f) : (real)(SUN_FAR);
+  direct_ray(s, &sample, &direct);
   direct.valid = valid;
   return direct;
 }

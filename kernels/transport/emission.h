@@ -19,8 +19,8 @@ SUN_FN real emission_weight(const Scene *scene, uint_n depth, real pdf_solid_ang
   return alone ? (real)(1.0f) : (real)(0.0f);
 }
 
-// Solid-angle pdf with which direct.h would send a shadow ray from the ray's origin to this point of the surface.
-SUN_FN real emitter_pdf(const Scene *scene, const Surface *s, const HitLanes *hit, mask emits) {
+// Chance with which the triangle that was hit is chosen among the emitters; 0 where it stands not among them.
+SUN_FN real hit_emitter_pmf(const Scene *scene, const HitLanes *hit, mask emits) {
   uint_n first, own;
   GATHER_UINT(first, scene->instances, hit->instance, first_emitter);
   own = gather_uint(scene->triangle_emitter, hit->primitive);
@@ -28,8 +28,14 @@ SUN_FN real emitter_pdf(const Scene *scene, const Surface *s, const HitLanes *hi
   uint_n index = known ? first + own : (uint_n)(0);
   real pmf;
   GATHER_FLOAT(pmf, scene->emitters, index, pmf);
+  return known ? pmf : (real)(0.0f);
+}
+
+// Solid-angle pdf with which direct.h would send a shadow ray from the ray's origin to this point of the surface.
+SUN_FN real emitter_pdf(const Scene *scene, const Surface *s, const HitLanes *hit, mask emits) {
+  real pmf = hit_emitter_pmf(scene, hit, emits);
   real cosine = fabs(s->cos_front);
-  mask usable = known & (s->area > 0.0f) & (cosine > 0.0f);
+  mask usable = (pmf > 0.0f) & (s->area > 0.0f) & (cosine > 0.0f);
   return usable ? pmf * (hit->t * hit->t) / ((usable ? s->area : (real)(1.0f)) * (usable ? cosine : (real)(1.0f))) : (real)(0.0f);
 }
 

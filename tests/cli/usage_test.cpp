@@ -101,6 +101,14 @@ TEST(Usage, FlagsOfOneIntegrator) {
   expect_refusal({"render", cornell, "--integrator", "path", "--indirect-samples", "2"}, 2, "--integrator hybrid");
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--indirect-samples", "0"}, 2, "1 to 1024");
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--indirect-samples", "64"}, 2, "--max-depth 3 or less");
+  expect_refusal({"render", cornell, "--strategy", "1,2"}, 2, "--integrator bdpt");
+  expect_refusal({"render", cornell, "--integrator", "bdpt", "--strategy", "2,0"}, 2, "at least 1");
+  expect_refusal({"render", cornell, "--integrator", "bdpt", "--strategy", "1"}, 2, "S,T");
+  expect_refusal({"render", cornell, "--integrator", "bdpt", "--strategy", "1,1"}, 2, "0,2");
+  expect_refusal({"render", cornell, "--integrator", "bdpt", "--unweighted"}, 2, "--strategy");
+  expect_refusal({"render", cornell, "--integrator", "bdpt", "--heuristic", "maximum"}, 2, "maximum");
+  expect_refusal({"render", cornell, "--integrator", "bdpt", "--crop", "0,0,8,8"}, 2, "--crop");
+  expect_refusal({"render", cornell, "--integrator", "bdpt", "--max-depth", "100"}, 2, "64");
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--nee", "last"}, 2, "last");
   for (const char *chance : {"1", "-0.1", "nan", "0.99999999999"})
     expect_refusal({"render", cornell, "--integrator", "hybrid", "--absorption", chance}, 2, "--absorption");

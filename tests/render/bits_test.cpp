@@ -192,7 +192,7 @@ TEST(Bits, CropsAreWindowsOfTheWhole) {
 }
 
 TEST(Bits, BouncesSumToTheBeautyBinByBin) {
-  for (const char *integrator : {"path", "pure", "hybrid"}) {
+  for (const char *integrator : {"path", "pure", "hybrid", "bdpt"}) {
     Scene without = everything();
     if (std::string(integrator) == "pure") without.lights.clear();
     RenderSettings s = settings();
@@ -227,6 +227,8 @@ TEST(Bits, WaysOfEveryIntegrator) {
   kinds[3].second.absorption = 0.25f;
   kinds[4].second.integrator = "distribution";
   kinds[4].second.indirect_samples = 2;
+  kinds.emplace_back(&lit_case, settings());
+  kinds.back().second.integrator = "bdpt";
   std::vector<std::string> seen;
   for (const auto &[made, s] : kinds) {
     const auto expected = hashes(render(*made, s, samples).film);
