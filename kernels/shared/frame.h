@@ -84,7 +84,7 @@ typedef struct Frame {
   float absorption;              // chance to end at each scattering, whatever the throughput; negative: by the throughput
   uint indirect_samples;         // rays that leave a vertex
   uint strategy_s, strategy_t;   // bidirectional: vertices from the light's side and from the eye's, of the one strategy that counts; SUN_NONE: all
-  uint pad;
+  uint pad[3];
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 
