@@ -26,7 +26,7 @@ class Tracer {
   Tracer(const Device &device, const FlatScene &scene, const Tree &tree)
       : layout(name_of(tree.layout)),
         device_(device),
-        program_(device, "stages/trace.cl", {{"SUN_LAYOUT", int(tree.layout)}}),
+        program_(device, "stages/trace.cl", {{"SUN_LAYOUT", int(tree.layout)}, {"SUN_SHAPES", scene.shape_count > 0}}),
         closest_(program_, "trace_closest"),
         any_(program_, "trace_any"),
         nodes_(device, std::span<const std::byte>(tree.nodes), "nodes"),
@@ -36,16 +36,19 @@ class Tracer {
         fragments_(device, std::span<const kernel::Fragment>(scene.fragments), "fragments"),
         instances_(device, std::span<const kernel::Instance>(scene.instances), "instances"),
         top_root_(tree.top_root),
-        instance_count_(uint(scene.instances.size())) {}
+        instance_count_(uint(scene.instances.size() - scene.plane_count)),
+        plane_count_(uint(scene.plane_count)) {}
 
   // Seconds from the launch to its end.
   double trace(const Buffer<TraceRay> &rays, const Buffer<Passed> &passed, bool any, const Buffer<kernel::Hit> &hits, const Buffer<uint> &blocked) {
     const uint count = uint(rays.size()), want = 0;
     const auto start = std::chrono::steady_clock::now();
     if (any)
-      any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_, instance_count_);
+      any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_, instance_count_,
+                   plane_count_);
     else
-      closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_, instance_count_);
+      closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_, instance_count_,
+                   plane_count_);
     device_.finish();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
@@ -60,7 +63,7 @@ class Tracer {
   Buffer<uint> list_, roots_;
   Buffer<kernel::Fragment> fragments_;
   Buffer<kernel::Instance> instances_;
-  uint top_root_, instance_count_;
+  uint top_root_, instance_count_, plane_count_;
 };
 
 double median(std::vector<double> values) {

@@ -55,8 +55,9 @@ def check(path):
     for i, view in enumerate(document["bufferViews"]):
         assert view["byteOffset"] + view["byteLength"] <= document["buffers"][view["buffer"]]["byteLength"], f"bufferViews[{i}]: beyond its buffer"
     used = set()
-    triangles = 0
-    for m, mesh in enumerate(document["meshes"]):
+    triangles = shapes = 0
+    root = document.get("extensions", {})
+    for m, mesh in enumerate(document.get("meshes", [])):
         for p, primitive in enumerate(mesh["primitives"]):
             place = f"meshes[{m}].primitives[{p}]"
             attributes = {name: read(document, buffers, index) for name, index in primitive["attributes"].items()}
@@ -78,24 +79,35 @@ def check(path):
                 for k in (a, b, c) if "NORMAL" in attributes else ():
                     assert sum(x * y for x, y in zip(n, attributes["NORMAL"][k])) > 0, f"{place}: triangle {a} {b} {c} against its normals"
             triangles += len(indices) // 3
-    assert used == set(range(len(document["accessors"]))), "accessors that nothing uses"
+    assert used == set(range(len(document.get("accessors", [])))), "accessors that nothing uses"
     for i, node in enumerate(document["nodes"]):
-        assert node.get("mesh", 0) < len(document["meshes"]) and node.get("camera", 0) < len(document.get("cameras", [0])), f"nodes[{i}]"
+        assert node.get("mesh", 0) < len(document.get("meshes", [0])) and node.get("camera", 0) < len(document.get("cameras", [0])), f"nodes[{i}]"
+        light = node.get("extensions", {}).get("KHR_lights_punctual", {}).get("light", 0)
+        assert light < len(root.get("KHR_lights_punctual", {}).get("lights", [0])), f"nodes[{i}]: light"
+        shape = node.get("extras", {}).get("sunstone_shape")
+        if shape:
+            shapes += 1
+            assert shape["material"] < len(document["materials"]), f"nodes[{i}]: material of its shape"
+            if "shape" in shape:
+                assert root["KHR_implicit_shapes"]["shapes"][shape["shape"]]["sphere"]["radius"] > 0, f"nodes[{i}]: its shape"
+            else:
+                assert shape["type"] in ("disk", "quad", "plane"), f"nodes[{i}]: its shape's type"
+                assert all(x > 0 for x in [shape.get("radius", 1), *shape.get("size", [])]), f"nodes[{i}]: its shape's size"
         assert abs(sum(x * x for x in node.get("rotation", [1])) - 1) < 1e-6, f"nodes[{i}]: rotation's length"
     assert sorted(document["scenes"][0]["nodes"]) == list(range(len(document["nodes"]))), "nodes of the scene"
-    extensions = {name for material in document["materials"] for name in material.get("extensions", {})}
+    extensions = set(root) | {name for node in document["nodes"] for name in node.get("extensions", {})} | {name for material in document["materials"] for name in material.get("extensions", {})}
     assert extensions <= set(document.get("extensionsUsed", [])), "extensionsUsed"
     for i, material in enumerate(document["materials"]):
         factors = material["pbrMetallicRoughness"]["baseColorFactor"] + material.get("emissiveFactor", [])
         assert all(0 <= x <= 1 for x in factors), f"materials[{i}]: factor"
-    return triangles
+    return f"{triangles} triangles" + (f", {shapes} shapes" if shapes else "")
 
 
 wrong = False
 here = pathlib.Path(__file__).resolve().parent
 for path in [pathlib.Path(a) for a in sys.argv[1:]] or sorted([*here.rglob("*.gltf"), *here.rglob("*.glb")]):
     try:
-        print(f"{path.name}: {check(path)} triangles")
+        print(f"{path.name}: {check(path)}")
     except (AssertionError, KeyError, IndexError, ValueError, OSError) as error:
         print(f"{path.name}: {type(error).__name__}: {error}")
         wrong = True

@@ -98,10 +98,29 @@ class Gltf:
     def shape(self, name, shape, material, **fields):
         return self.node(name, mesh=self.mesh(name, self.primitive(shape, material)), **fields)
 
+    def sphere(self, name, radius, material, **fields):
+        """An analytic sphere: of KHR_implicit_shapes, shown by sunstone's own extras (docs/conventions.md)."""
+        self.uses("KHR_implicit_shapes")
+        shapes = self.json.setdefault("extensions", {}).setdefault("KHR_implicit_shapes", {"shapes": []})["shapes"]
+        shape = {"type": "sphere", "sphere": {"radius": radius}}
+        if shape not in shapes:
+            shapes.append(shape)
+        return self.node(name, extras={"sunstone_shape": {"shape": shapes.index(shape), "material": material}}, **fields)
+
+    def flat(self, name, kind, material, measures=None, **fields):
+        """A disk ({"radius": r}), a quad ({"size": [x, z]}) or an infinite plane, its front towards the node's +y."""
+        return self.node(name, extras={"sunstone_shape": {"type": kind, **(measures or {}), "material": material}}, **fields)
+
+    def light(self, name, kind, color, intensity, **fields):
+        self.uses("KHR_lights_punctual")
+        lights = self.json.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
+        lights.append({"name": name, "type": kind, "color": list(color), "intensity": intensity})
+        return self.node(name, extensions={"KHR_lights_punctual": {"light": len(lights) - 1}}, **fields)
+
     def material(self, name, color=(1, 1, 1), metallic=0.0, roughness=1.0, emission=None, extensions=None, texture=None, double_sided=False):
         pbr = {"baseColorFactor": [*color, 1.0], "metallicFactor": metallic, "roughnessFactor": roughness}
         if texture is not None:
-            pbr["baseColorTexture"] = {"index": texture}
+            pbr["baseColorTexture"] = {"index": texture} if isinstance(texture, int) else texture
         material = {"name": name, "pbrMetallicRoughness": pbr}
         extensions = dict(extensions or {})
         if emission:
@@ -132,9 +151,10 @@ class Gltf:
                 extensions["KHR_materials_volume"] |= {"attenuationColor": list(attenuation), "attenuationDistance": distance}
         return self.material(name, color, roughness=roughness, extensions=extensions)
 
-    def texture(self, name, png, wrap=10497):
+    def texture(self, name, png, wrap=10497, smooth=True):
         image = self.add("images", {"name": name, "mimeType": "image/png", "bufferView": self.view(png)})
-        sampler = self.add("samplers", {"magFilter": 9729, "minFilter": 9729, "wrapS": wrap, "wrapT": wrap})
+        kind = 9729 if smooth else 9728
+        sampler = self.add("samplers", {"magFilter": kind, "minFilter": kind, "wrapS": wrap, "wrapT": wrap})
         return self.add("textures", {"source": image, "sampler": sampler})
 
     def camera(self, name, position, target=None, rotation=None, yfov=None, aspect=None):

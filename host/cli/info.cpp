@@ -2,6 +2,7 @@
 // sunstone info: what is in a scene, without rendering it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -38,12 +39,14 @@ void tell(const Options &o, Notices &notices) {
   const MemoryEstimate memory = content.estimate_memory(scene, Layout::wide16);
   std::size_t emissive = 0;
   for (const Material &material : scene.materials) emissive += material.emission.x + material.emission.y + material.emission.z > 0;
+  const auto shapes = [&](Shape::Kind kind) { return std::ranges::count(scene.shapes, kind, &Shape::kind); };
   if (o.json) {
     nlohmann::ordered_json j = {{"scene", o.scene},
                                 {"triangles", unique},
                                 {"triangles_flattened", flattened},
                                 {"meshes", scene.meshes.size()},
                                 {"instances", scene.instances.size()},
+                                {"shapes", {{"sphere", shapes(Shape::Kind::sphere)}, {"disk", shapes(Shape::Kind::disk)}, {"quad", shapes(Shape::Kind::quad)}, {"plane", shapes(Shape::Kind::plane)}}},
                                 {"materials", scene.materials.size()},
                                 {"emissive_materials", emissive},
                                 {"textures", scene.textures.size()},
@@ -60,6 +63,9 @@ void tell(const Options &o, Notices &notices) {
   fmt::print("{}\n", printable(o.scene, 400));
   fmt::print("  triangles   {} ({} once instances are unfolded)\n", unique, flattened);
   fmt::print("  meshes      {}, instances {}\n", scene.meshes.size(), scene.instances.size());
+  if (!scene.shapes.empty())
+    fmt::print("  shapes      {} spheres, {} disks, {} quads, {} infinite planes\n", shapes(Shape::Kind::sphere), shapes(Shape::Kind::disk), shapes(Shape::Kind::quad),
+               shapes(Shape::Kind::plane));
   fmt::print("  materials   {} ({} emissive), textures {}, images {}\n", scene.materials.size(), emissive, scene.textures.size(), scene.images.size());
   fmt::print("  lights      {}, cameras {}\n", scene.lights.size(), scene.cameras.size());
   for (std::size_t i = 0; i < scene.cameras.size(); i++)

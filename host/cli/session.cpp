@@ -90,8 +90,9 @@ LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, L
   loaded.camera = content.flatten_camera(camera, settings.width, settings.height);
   loaded.build_seconds = now() - begun - loaded.import_seconds;
   const FlatScene &flat = loaded.flat;
-  loaded.line = fmt::format("{}: {} triangles, {} instance{}, {} material{}, {} texture{}, {} emitter{}", printable(o.scene), flat.triangles.size(), flat.instances.size(),
-                            flat.instances.size() == 1 ? "" : "s", flat.materials.size(), flat.materials.size() == 1 ? "" : "s", flat.textures.size(),
+  const std::size_t meshes = flat.instances.size() - flat.shape_count;
+  loaded.line = fmt::format("{}: {} triangles, {} instance{}{}, {} material{}, {} texture{}, {} emitter{}", printable(o.scene), flat.triangles.size() - flat.shape_count, meshes,
+                            meshes == 1 ? "" : "s", flat.shape_count ? fmt::format(", {} shape{}", flat.shape_count, flat.shape_count == 1 ? "" : "s") : "", flat.materials.size(), flat.materials.size() == 1 ? "" : "s", flat.textures.size(),
                             flat.textures.size() == 1 ? "" : "s", flat.emitters.size(), flat.emitters.size() == 1 ? "" : "s");
   return loaded;
 }
@@ -100,6 +101,7 @@ Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSetti
   variant.bidirectional = integrator(settings.integrator).bidirectional;
   variant.passable = scene.has_passable;
   variant.specular = scene.has_specular;
+  variant.shapes = scene.shape_count > 0;
   variant.textures = scene.has_textures;
   variant.branching = branches(settings);
   return variant;

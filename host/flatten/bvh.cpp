@@ -303,7 +303,7 @@ Bounds bounds_of(std::span<const RTCBuildPrimitive> boxes) {
 }
 
 TreePart build_top(RTCDevice embree, const FlatScene &scene, Layout layout) {
-  std::vector<RTCBuildPrimitive> boxes(scene.instances.size(), RTCBuildPrimitive{});
+  std::vector<RTCBuildPrimitive> boxes(scene.instances.size() - scene.plane_count, RTCBuildPrimitive{});
   for (std::size_t i = 0; i < boxes.size(); i++) {
     const kernel::Instance &instance = scene.instances[i];
     boxes[i].geomID = 0;
@@ -362,8 +362,11 @@ Tree build_tree(const FlatScene &scene, Layout layout, const std::function<void(
     tree.leaves.reserve(leaf_total);
   }
   for (std::size_t i = 0; i < parts.size(); i++) mesh_roots[i] = append_part(tree, std::exchange(parts[i], {}));
-  for (const uint mesh : scene.instance_mesh) tree.roots.push_back(mesh_roots.at(mesh));
-  if (scene.instances.size() > 1) tree.top_root = append_part(tree, build_top(embree.get(), scene, layout));
+  for (std::size_t i = 0; i < scene.instances.size(); i++) {
+    const uint mesh = scene.instance_mesh[i];
+    tree.roots.push_back(scene.instances[i].flags & SUN_INSTANCE_SHAPE ? scene.meshes[mesh].first_triangle : mesh_roots.at(mesh));
+  }
+  if (scene.instances.size() - scene.plane_count > 1) tree.top_root = append_part(tree, build_top(embree.get(), scene, layout));
   return tree;
 }
 

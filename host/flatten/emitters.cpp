@@ -81,8 +81,20 @@ double mean_emission(const FlatScene &flat, const kernel::Triangle &triangle, co
   return std::max(sum / 16, emission.floor);
 }
 
+// Of a shape: as along the axes of its space on the mean, which is exact where these are scaled alike.
+double shape_area(const kernel::Instance &instance) {
+  const auto column = [&](int c) { return glm::dvec3(instance.to_world[c], instance.to_world[4 + c], instance.to_world[8 + c]); };
+  const auto across = [&](int a, int b) {
+    const glm::dvec3 n = glm::cross(column(a), column(b));
+    return std::sqrt((n.x * n.x + n.y * n.y) + n.z * n.z);
+  };
+  if (instance.flags & SUN_INSTANCE_SPHERE) return 4 * pi * ((across(1, 2) + across(2, 0)) + across(0, 1)) / 3;
+  return across(2, 0) * (instance.flags & SUN_INSTANCE_DISK ? pi : 4);
+}
+
 // Area in world space; nothing where it is not finite.
 double world_area(const FlatScene &flat, const kernel::Instance &instance, const kernel::Triangle &triangle) {
+  if (instance.flags & SUN_INSTANCE_SHAPE) return shape_area(instance);
   glm::vec3 corner[3];
   for (std::size_t k = 0; k < 3; k++) corner[k] = transform_point(instance, flat.vertices[triangle.vertex[k]].position);
   const glm::dvec3 cross = triangle_cross(corner[0], corner[1], corner[2]);
@@ -165,6 +177,15 @@ void flatten_emitters(const Scene &scene, std::size_t max_bytes, FlatScene &flat
       const bool both = flat.materials[triangle.material].flags & SUN_MATERIAL_DOUBLE_SIDED;
       radiance[m][k] = mean_emission(flat, triangle, emissions[triangle.material]) * (both ? 2 * pi : pi);
     });
+  }
+  // The triangle that stands for a shape has no place in a texture: the mean of all of it.
+  for (std::size_t i = flat.instances.size() - flat.shape_count; i < flat.instances.size(); i++) {
+    const std::size_t m = flat.instance_mesh[i];
+    if (emissive[m].empty()) continue;
+    const uint material = flat.triangles[emissive[m][0]].material;
+    const Emission &emission = emissions[material];
+    const bool both = flat.materials[material].flags & SUN_MATERIAL_DOUBLE_SIDED;
+    radiance[m][0] = (emission.ref == SUN_NONE ? emission.luminance : emission.floor / texture_floor) * (both ? 2 * pi : pi);
   }
   for (std::size_t i = 0; i < flat.instances.size(); i++) {
     const uint mesh = flat.instance_mesh[i];

@@ -82,6 +82,7 @@ MemoryEstimate estimate_memory(const Scene &scene, Layout layout) {
   estimate.geometry = vertices * (sizeof(kernel::Vertex) + (extras ? sizeof(kernel::VertexExtra) : 0)) +
                       triangles * (sizeof(kernel::Triangle) + 3 * sizeof(kernel::uint)) + triangles / 2 * sizeof(kernel::Fragment) +
                       instances * (sizeof(kernel::Instance) + 3 * sizeof(kernel::uint));
+  estimate.geometry += scene.shapes.size() * (sizeof(kernel::Triangle) + sizeof(kernel::Vertex) + sizeof(kernel::Instance) + 6 * sizeof(kernel::uint));
   // Leaves are about half full; a node of W children leads to about W / 2 others.
   const std::size_t items = triangles + triangles / 3 + instances;  // pieces of long triangles with them
   switch (layout) {

@@ -28,12 +28,12 @@ struct Tree {
   std::vector<std::byte> nodes;
   std::vector<std::byte> leaves;
   std::vector<kernel::uint> instance_list;  // binary: the top tree's leaves index this; wide: empty
-  std::vector<kernel::uint> roots;          // of each instance's mesh, by instance number: a node, or (wide) a leaf with SUN_WIDE_LEAF
+  std::vector<kernel::uint> roots;          // of each instance's mesh, by instance number: a node, or (wide) a leaf with SUN_WIDE_LEAF; of a shape: its primitive
   kernel::uint top_root = 0;                // not used where there is one instance
   std::size_t node_count = 0, leaf_count = 0, depth = 0;
 };
 
-// The triangles of one mesh: a range of FlatScene::triangles. Those that are split have their pieces, in the order of the triangles, in a range of
+// The triangles of one mesh, or the one that stands for a shape: a range of FlatScene::triangles. Those that are split have their pieces, in the order of the triangles, in a range of
 // FlatScene::fragments.
 struct MeshRange {
   kernel::uint first_triangle = 0, triangle_count = 0;
@@ -51,7 +51,8 @@ struct FlatScene {
   std::vector<MeshRange> meshes;
   std::vector<kernel::uint> instance_mesh;          // into meshes, by instance
   std::vector<kernel::uint> instance_object;        // the number of the scene's instance, from 1; 0 for the one that holds the baked meshes
-  std::vector<kernel::Instance> instances;
+  std::vector<kernel::Instance> instances;          // of meshes, of shapes with bounds, of infinite planes, in this order
+  std::size_t shape_count = 0, plane_count = 0;     // shapes among them, planes among these
   std::vector<kernel::Material> materials;
   std::vector<kernel::TextureRef> texture_refs;
   std::vector<kernel::Texture> textures;
@@ -62,7 +63,7 @@ struct FlatScene {
   std::vector<float> environment_texels;            // RGB, rows from the top; strength multiplied in
   std::vector<float> environment_cdf;               // (height + 1) marginal, then height rows of (width + 1)
   std::vector<float> tables;                        // SUN_TABLE_FLOATS; the filter's part is filled by the pipeline
-  Bounds bounds;
+  Bounds bounds;                                    // of all but infinite planes
   Tree tree;
   Hash scene_hash;
   bool has_passable = false, has_textures = false, has_specular = false;  // textures, or colours of vertices

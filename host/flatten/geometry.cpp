@@ -125,12 +125,16 @@ bool kept(const FlatScene &flat, const Part &part, std::size_t triangle) {
   return triangle_cross(corner[0], corner[1], corner[2]) != glm::dvec3(0);
 }
 
+// Is what has this material passed by rays that see it from behind?
+bool single_sided(const kernel::Material &material) {
+  return !(material.flags & (SUN_MATERIAL_DOUBLE_SIDED | SUN_MATERIAL_VOLUME)) && !(material.transmission > 0);
+}
+
 void write_triangles(const Part &part, FlatScene &flat) {
-  const uint flags = flat.materials[part.material].flags;
-  const bool transmits = flat.materials[part.material].transmission > 0 || (flags & SUN_MATERIAL_VOLUME);
+  const kernel::Material &material = flat.materials[part.material];
   uint bits = 0;
-  if (!(flags & SUN_MATERIAL_DOUBLE_SIDED) && !transmits) bits |= SUN_ID_SINGLE_SIDED;
-  if (flags & SUN_MATERIAL_PASSABLE) bits |= SUN_ID_PASSABLE;
+  if (single_sided(material)) bits |= SUN_ID_SINGLE_SIDED;
+  if (material.flags & SUN_MATERIAL_PASSABLE) bits |= SUN_ID_PASSABLE;
   std::size_t to = part.first_triangle;
   const auto &indices = part.welded->indices;
   for (std::size_t t = 0; 3 * t < indices.size(); t++) {
@@ -281,6 +285,77 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
     notices.warning(scene.name, std::to_string(far) + " instances lie beyond 1e18 m or cannot be inverted in single precision; they are left out");
 }
 
+uint kind_bit(Shape::Kind kind) {
+  switch (kind) {
+    case Shape::Kind::sphere: return SUN_INSTANCE_SPHERE;
+    case Shape::Kind::disk: return SUN_INSTANCE_DISK;
+    case Shape::Kind::quad: return SUN_INSTANCE_QUAD;
+    case Shape::Kind::plane: return SUN_INSTANCE_PLANE;
+  }
+  return 0;
+}
+
+// The world box of a shape, with the margin of world_box.
+Bounds shape_box(const float *m, Shape::Kind kind) {
+  Bounds box;
+  for (int r = 0; r < 3; r++) {
+    const float x = std::fabs(m[4 * r]), y = std::fabs(m[4 * r + 1]), z = std::fabs(m[4 * r + 2]), center = m[4 * r + 3];
+    const float reach = kind == Shape::Kind::quad   ? x + z
+                        : kind == Shape::Kind::disk ? std::sqrt(x * x + z * z)
+                                                    : std::sqrt((x * x + y * y) + z * z);
+    const float pad = (std::fabs(center) + ((x + y) + z)) * 0x1p-19f;
+    box.lower[r] = (center - reach) - pad;
+    box.upper[r] = (center + reach) + pad;
+  }
+  return box;
+}
+
+// An instance for each shape of the wanted sort, and the triangle that stands for it: it takes up the primitive number and holds the material, and its
+// corners are one point, so no ray hits it.
+void write_shapes(const Scene &scene, bool planes, bool extras, FlatScene &flat, Notices &notices) {
+  std::size_t far = 0;
+  for (std::size_t i = 0; i < scene.shapes.size(); i++) {
+    const Shape &shape = scene.shapes[i];
+    if ((shape.kind == Shape::Kind::plane) != planes) continue;
+    const Placement p = placement_of(shape.transform);
+    kernel::Instance instance{};
+    std::copy(std::begin(p.m), std::end(p.m), instance.to_world);
+    invert(p, instance.to_object);
+    const Bounds box = planes ? Bounds{glm::vec3(0), glm::vec3(0)} : shape_box(p.m, shape.kind);
+    if (!in_range(box) || !std::all_of(std::begin(instance.to_object), std::end(instance.to_object), [](float x) { return std::isfinite(x); })) {
+      far++;
+      continue;
+    }
+    const uint material = material_number(scene, shape.material);
+    instance.flags = kind_bit(shape.kind) | (p.mirrored() ? SUN_INSTANCE_MIRRORED : 0);
+    if (single_sided(flat.materials[material])) instance.flags |= SUN_INSTANCE_SINGLE_SIDED;
+    if (flat.materials[material].flags & SUN_MATERIAL_PASSABLE) instance.flags |= SUN_INSTANCE_PASSABLE;
+    instance.first_emitter = SUN_NONE;
+    for (int c = 0; c < 3; c++) {
+      instance.lower[c] = box.lower[c];
+      instance.upper[c] = box.upper[c];
+      if (planes) continue;
+      flat.bounds.lower[c] = std::min(flat.bounds.lower[c], box.lower[c]);
+      flat.bounds.upper[c] = std::max(flat.bounds.upper[c], box.upper[c]);
+    }
+    const auto vertex = static_cast<uint>(flat.vertices.size()), primitive = static_cast<uint>(flat.triangles.size());
+    kernel::Vertex corner{};
+    corner.normal[1] = 1;
+    flat.vertices.push_back(corner);
+    if (extras) flat.vertex_extras.push_back({});
+    flat.triangles.push_back({{vertex, vertex, vertex}, material});
+    flat.triangle_ids.push_back(primitive);
+    flat.triangle_object.push_back(0);
+    flat.instance_mesh.push_back(static_cast<uint>(flat.meshes.size()));
+    flat.meshes.push_back({primitive, 1});
+    flat.instances.push_back(instance);
+    flat.instance_object.push_back(static_cast<uint>(scene.instances.size() + i + 1));
+    flat.shape_count++;
+    flat.plane_count += planes;
+  }
+  if (far) notices.warning(scene.name, std::to_string(far) + " shapes lie beyond 1e18 m or cannot be inverted in single precision; they are left out");
+}
+
 void check_size(const char *what, std::size_t count, std::size_t size, std::size_t max_bytes) {
   if (count > max_bytes / size)
     throw Error{"flatten", std::to_string(count) + " " + what + " do not fit into one buffer of " + std::to_string(max_bytes >> 20) + " MiB",
@@ -384,8 +459,9 @@ void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) { write_triangles(parts[i], flat); });
   if (dropped) notices.note(scene.name, std::to_string(dropped) + " triangles without area are left out");
 
-  number_emitters(flat);
   write_instances(scene, uses, range_of_mesh, any_baked, flat, notices);
+  if (triangles + scene.shapes.size() > SUN_ID_PRIMITIVE) throw Error{"flatten", "more than 2^29 triangles and shapes", "use a simpler scene"};
+  write_shapes(scene, false, extras, flat, notices);
   if (flat.instances.empty()) {  // nothing to show: an identity of an empty range, at the end of the triangles
     kernel::Instance instance{};
     for (int i = 0; i < 3; i++) instance.to_world[5 * i] = instance.to_object[5 * i] = 1;
@@ -396,6 +472,8 @@ void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat
     flat.instance_mesh.push_back(static_cast<uint>(flat.meshes.size() - 1));
     flat.instance_object.push_back(0);
   }
+  write_shapes(scene, true, extras, flat, notices);
+  number_emitters(flat);
   if (flat.bounds.empty()) {
     flat.bounds.lower = glm::vec3(-1);
     flat.bounds.upper = glm::vec3(1);

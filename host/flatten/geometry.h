@@ -17,7 +17,7 @@ std::vector<MeshUse> mesh_uses(const Scene &scene);
 bool needs_tangents(const Scene &scene, const Primitive &primitive);
 
 // Fills vertices, vertex_extras, triangles, triangle_ids, triangle_emitter, meshes, instance_mesh, instances (but for first_emitter) and bounds.
-// All baked meshes are mesh range 0 and instance 0, the identity. There is always an instance; an empty scene has one of an empty mesh.
+// Shapes follow, each with a range of its own. All baked meshes are mesh range 0 and instance 0, the identity. There is always an instance; an empty scene has one of an empty mesh.
 // flat.materials has to be finished. `max_bytes`: of one buffer.
 void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat, Notices &notices);
 

@@ -17,7 +17,7 @@ void copy3(const glm::vec3 &from, float *to) {
 
 bool any_positive(const float *rgb) { return rgb[0] > 0 || rgb[1] > 0 || rgb[2] > 0; }
 
-// By record: is it on any triangle of an instance, and the least alpha among the vertex colours there.
+// By record: is it on any triangle of an instance, or on a shape, and the least alpha among the vertex colours there.
 struct Use {
   bool shown = false;
   float least_color_alpha = 1;
@@ -34,6 +34,7 @@ std::vector<Use> uses_of(const Scene &scene) {
       use.shown = true;
       for (const glm::vec4 &color : primitive.colors) use.least_color_alpha = std::min(use.least_color_alpha, color.w);
     }
+  for (const Shape &shape : scene.shapes) uses[material_number(scene, shape.material)].shown = true;
   return uses;
 }
 

@@ -16,7 +16,7 @@ namespace {
 using namespace gltf;
 
 constexpr const char *supported_extensions[] = {
-    "EXT_mesh_gpu_instancing", "EXT_texture_webp",       "KHR_lights_punctual",  "KHR_materials_emissive_strength",
+    "EXT_mesh_gpu_instancing", "EXT_texture_webp",       "KHR_implicit_shapes", "KHR_lights_punctual",  "KHR_materials_emissive_strength",
     "KHR_materials_ior",       "KHR_materials_specular", "KHR_materials_unlit",  "KHR_materials_transmission",
     "KHR_materials_volume",    "KHR_mesh_quantization",  "KHR_texture_transform"};
 
@@ -64,7 +64,7 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   const Value root(context, &document.root, "");
   check_asset(root);
   check_required_extensions(root);
-  root.check_extensions({"KHR_lights_punctual"});
+  root.check_extensions({"KHR_implicit_shapes", "KHR_lights_punctual"});
 
   Scene scene;
   scene.name = path.stem().string();
@@ -76,11 +76,11 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   Images images(root, buffers);
   Materials materials(root, images);
   Meshes meshes(root, accessors, materials);
-  Nodes(root, accessors, meshes).import(scene);
+  Nodes(root, accessors, materials, meshes).import(scene);
   images.read(scene);
 
   if (root["animations"].size() > 0) context.report.warning(file, "animations are not played: the scene is shown at rest");
-  if (scene.instances.empty()) context.report.warning(file, "there is no triangle in it to render");
+  if (scene.instances.empty() && scene.shapes.empty()) context.report.warning(file, "there is no triangle in it to render");
   context.report.flush(notices);
   return scene;
 }

@@ -75,12 +75,14 @@ std::string name_of(const Value &object, const Value &node) {
 
 }  // namespace
 
-Nodes::Nodes(const Value &root, Accessors &accessors, Meshes &meshes)
+Nodes::Nodes(const Value &root, Accessors &accessors, Materials &materials, Meshes &meshes)
     : root_(root),
       nodes_(root["nodes"]),
       cameras_(root["cameras"]),
       lights_(root.extension("KHR_lights_punctual")["lights"]),
+      shapes_(root.extension("KHR_implicit_shapes")["shapes"]),
       accessors_(accessors),
+      materials_(materials),
       meshes_(meshes) {}
 
 // Strict trees: no node has two parents, and none is its own ancestor.
@@ -173,7 +175,9 @@ void Nodes::add_node(const Value &node, const glm::dmat4 &world, Scene &scene) {
   node.check_extensions({"KHR_lights_punctual", "EXT_mesh_gpu_instancing"});
   if (node["skin"]) node.context().report.once(node.context().file, "skins are not applied: skinned meshes are shown as they are stored");
   const Value mesh = node["mesh"], camera = node["camera"], light = node.extension("KHR_lights_punctual");
-  if (!mesh && !camera && !light) return;
+  // Extras may be anything at all.
+  const Value extras = node["extras"], shape = extras && extras.json().is_object() ? extras["sunstone_shape"] : Value(node.context(), nullptr, "");
+  if (!mesh && !camera && !light && !shape) return;
   if (!usable(world)) {
     node.warn("its transform is not finite or beyond all measure, so it was left out");
     return;
@@ -181,6 +185,7 @@ void Nodes::add_node(const Value &node, const glm::dmat4 &world, Scene &scene) {
   if (mesh) add_instances(node, world, scene);
   if (camera) add_camera(node, world, scene);
   if (light) add_light(node, world, scene);
+  if (shape) add_shape(node, shape, world, scene);
 }
 
 void Nodes::add_instances(const Value &node, const glm::dmat4 &world, Scene &scene) {
@@ -265,6 +270,58 @@ void Nodes::add_camera(const Value &node, const glm::dmat4 &world, Scene &scene)
   }
   camera.transform = {glm::vec3(*right), glm::vec3(glm::cross(*back, *right)), glm::vec3(*back), glm::vec3(world[3])};
   scene.cameras.push_back(std::move(camera));
+}
+
+// An analytic shape: {"shape": index into KHR_implicit_shapes} or {"type": "disk" | "quad" | "plane" ...}; docs/conventions.md has the whole of it.
+void Nodes::add_shape(const Value &node, const Value &value, const glm::dmat4 &world, Scene &scene) {
+  value.expect_object();
+  Shape shape;
+  shape.name = node["name"].text();
+  glm::dvec3 size(1);
+  // A size has to be there or have a default, and be above 0.
+  const auto measure = [](const Value &number, double otherwise) {
+    const double size = number.number(otherwise);
+    if (!(size > 0) || !std::isfinite(size)) number.fail("a size has to be above 0");
+    return size;
+  };
+  const Value reference = value["shape"], type = value["type"];
+  if (reference) {
+    if (type) type.fail("stands beside \"shape\"", "a shape is an index into KHR_implicit_shapes, or has a type of sunstone's own");
+    const Value implicit = shapes_[reference.index(shapes_.size(), "shapes")];
+    implicit.expect_object();
+    const Value kind = implicit["type"];
+    if (!kind) kind.fail("is missing");
+    if (kind.text() != "sphere")
+      kind.fail("\"" + printable(kind.text()) + "\" is not rendered: of KHR_implicit_shapes sunstone has the sphere", "use a mesh, or a type of sunstone's own: disk, quad, plane");
+    shape.kind = Shape::Kind::sphere;
+    size = glm::dvec3(measure(implicit["sphere"]["radius"], 0.5));
+  } else if (type.text() == "disk") {
+    shape.kind = Shape::Kind::disk;
+    size = glm::dvec3(measure(value["radius"], 1));
+  } else if (type.text() == "quad") {
+    shape.kind = Shape::Kind::quad;
+    const Value extent = value["size"];
+    if (extent) {
+      extent.numbers(2);
+      size = {0.5 * measure(extent[0], 0), 1, 0.5 * measure(extent[1], 0)};
+    } else {
+      size = {0.5, 1, 0.5};
+    }
+  } else if (type.text() == "plane") {
+    shape.kind = Shape::Kind::plane;
+  } else {
+    type.fail(type ? "\"" + printable(type.text()) + "\" is none of disk, quad, plane" : "is missing", "a sphere is {\"shape\": N}, with N an index into KHR_implicit_shapes");
+  }
+  if (shape.kind != Shape::Kind::sphere) size.y = size.x;  // its normal's length means nothing; alike, it keeps the transform regular
+  shape.material = materials_.material(value["material"], scene);
+  accessors_.budget().take(1, sizeof(Shape) + shape.name.size(), node);
+  const glm::dmat4 transform = world * glm::dmat4(glm::dvec4(size.x, 0, 0, 0), glm::dvec4(0, size.y, 0, 0), glm::dvec4(0, 0, size.z, 0), glm::dvec4(0, 0, 0, 1));
+  if (!usable(transform)) {
+    node.warn("its transform is not finite or beyond all measure, so it was left out");
+    return;
+  }
+  shape.transform = rounded(transform);
+  scene.shapes.push_back(std::move(shape));
 }
 
 // KHR_lights_punctual: shines along the node's -z; neither intensity nor angles are scaled by the node.

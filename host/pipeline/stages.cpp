@@ -13,7 +13,7 @@ namespace sunstone {
 namespace {
 
 Switches shading(const Variant &v) {
-  return {{"LANES", static_cast<int>(v.lanes)}, {"SUN_COLUMNS", v.columns}, {"SUN_SPECULAR", v.specular}, {"SUN_TEXTURES", v.textures}};
+  return {{"LANES", static_cast<int>(v.lanes)}, {"SUN_COLUMNS", v.columns}, {"SUN_SPECULAR", v.specular}, {"SUN_TEXTURES", v.textures}, {"SUN_SHAPES", v.shapes}};
 }
 Switches tracing(const Variant &v) {
   Switches switches = shading(v);

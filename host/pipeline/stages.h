@@ -21,7 +21,7 @@ struct Variant {
   Layout layout = Layout::binary;
   bool columns = false;
   unsigned chunk = 1024;
-  bool passable = true, specular = true, textures = true;
+  bool passable = true, specular = true, textures = true, shapes = true;
   bool branching = false;
   bool bidirectional = false;  // has the stages of light subpaths
   bool operator==(const Variant &) const = default;

@@ -81,7 +81,9 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
 
   frame.environment = scene.environment;
   frame.emitter_count = static_cast<kernel::uint>(scene.emitters.size());
-  frame.instance_count = static_cast<kernel::uint>(scene.instances.size());
+  frame.instance_count = static_cast<kernel::uint>(scene.instances.size() - scene.plane_count);
+  frame.light_count = static_cast<kernel::uint>(scene.lights.size());
+  frame.plane_count = static_cast<kernel::uint>(scene.plane_count);
   if (scene.vertex_extras.size() == scene.vertices.size() && scene.vertices.size() > 0 && scene.has_textures) frame.flags |= SUN_FRAME_EXTRAS;
   if (!scene.bounds.empty()) {
     const glm::vec3 center = (scene.bounds.lower + scene.bounds.upper) * 0.5f, half = scene.bounds.upper - center;

@@ -80,6 +80,8 @@ bool emits(const Scene &scene) {
   for (const Instance &instance : scene.instances)
     for (const Primitive &p : scene.meshes[instance.mesh].primitives)
       if (p.material >= 0 && lit(scene.materials[p.material].emission)) return true;
+  for (const Shape &shape : scene.shapes)
+    if (shape.material >= 0 && lit(scene.materials[shape.material].emission)) return true;
   return false;
 }
 

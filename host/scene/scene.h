@@ -82,6 +82,15 @@ struct Instance {
   glm::mat4x3 transform{1};  // mesh -> world (glm: four columns of three)
 };
 
+// A surface that is no mesh, in a space of its own: a sphere of radius 1 about the origin, or, in y = 0 with its front towards +y, a disk of radius 1, a
+// quad from -1 to 1 in x and z, and all of the plane.
+struct Shape {
+  enum class Kind { sphere, disk, quad, plane } kind = Kind::sphere;
+  std::string name;
+  int material = -1;  // into Scene::materials; -1: the default material
+  glm::mat4x3 transform{1};
+};
+
 struct Light {
   enum class Kind { point, spot, directional } kind = Kind::point;
   std::string name;
@@ -123,6 +132,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
+  std::vector<Shape> shapes;
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   Environment environment;

@@ -43,6 +43,16 @@ bool singular(const glm::mat4x3 &m) {
   return !(determinant > 1e-12 * glm::length(x) * glm::length(y) * glm::length(z)) || !(determinant > 1e-36);
 }
 
+// Shapes are kept to sizes whose areas, squared, are floats.
+bool fits_shape(const glm::mat4x3 &m) {
+  if (!finite(m) || singular(m)) return false;
+  for (int axis = 0; axis < 3; axis++) {
+    const double length = glm::length(glm::dvec3(m[axis]));
+    if (!(length >= 1e-9 && length <= 1e9)) return false;
+  }
+  return true;
+}
+
 // The same fault in many places makes one line: how often, where first.
 class Tally {
  public:
@@ -72,6 +82,7 @@ class Validator {
     materials();
     meshes();
     instances();
+    shapes();
     lights();
     cameras();
     environment();
@@ -285,6 +296,32 @@ class Validator {
                                   (bad > 1 ? " (and " + std::to_string(bad - 1) + " more like it)" : ""));
   }
 
+  void shapes() {
+    std::size_t bad = 0;
+    std::string first;
+    std::vector<Shape> kept;
+    for (std::size_t i = 0; i < scene_.shapes.size(); i++) {
+      Shape &shape = scene_.shapes[i];
+      const std::string where = item("shapes", i, shape.name);
+      index(shape.material, scene_.materials.size(), true, where, "material");
+      if (!fits_shape(shape.transform)) {
+        if (bad++ == 0) first = where;
+        continue;
+      }
+      if (shape.material >= 0) {
+        const Material &m = scene_.materials[shape.material];
+        if (shape.kind == Shape::Kind::plane && (m.unlit || m.emission.x > 0 || m.emission.y > 0 || m.emission.z > 0))
+          fail(where, "an infinite plane cannot emit light: its power has no end" + std::string(m.unlit ? " (unlit surfaces emit their colour)" : ""));
+        if (m.normal_texture) tally_.add("has a normal map, which analytic shapes do not take: ignored", where);
+      }
+      kept.push_back(std::move(shape));
+    }
+    scene_.shapes = std::move(kept);
+    if (bad)
+      notices_.warning(file_, first + ": dropped, its transform is singular, not finite, leads too far out, or makes it smaller than 1e-9 or larger than 1e9 m" +
+                                  (bad > 1 ? " (and " + std::to_string(bad - 1) + " more like it)" : ""));
+  }
+
   void lights() {
     for (std::size_t i = 0; i < scene_.lights.size(); i++) {
       Light &light = scene_.lights[i];
@@ -377,6 +414,27 @@ Bounds scene_bounds(const Scene &scene) {
         grow(bounds, instance.transform *
                          glm::vec4(k & 1 ? box.upper.x : box.lower.x, k & 2 ? box.upper.y : box.lower.y, k & 4 ? box.upper.z : box.lower.z, 1));
     }
+  }
+  for (const Shape &shape : scene.shapes) {
+    const Bounds box = shape_bounds(shape);
+    if (box.empty()) continue;
+    grow(bounds, box.lower);
+    grow(bounds, box.upper);
+  }
+  return bounds;
+}
+
+Bounds shape_bounds(const Shape &shape) {
+  Bounds bounds;
+  if (shape.kind == Shape::Kind::plane) return bounds;
+  const glm::mat4x3 &m = shape.transform;
+  for (int axis = 0; axis < 3; axis++) {
+    const float x = m[0][axis], y = m[1][axis], z = m[2][axis];
+    const float reach = shape.kind == Shape::Kind::quad   ? std::abs(x) + std::abs(z)
+                        : shape.kind == Shape::Kind::disk ? std::sqrt(x * x + z * z)
+                                                          : std::sqrt((x * x + y * y) + z * z);
+    bounds.lower[axis] = m[3][axis] - reach;
+    bounds.upper[axis] = m[3][axis] + reach;
   }
   return bounds;
 }

@@ -161,6 +161,31 @@ SUN_FN BsdfSample lobes_sample(const Lobes *l, const SUN_GLOBAL float *tables, v
   return s;
 }
 
+// The deltas of wo, both at once, for those who follow each: mirrored, and refracted or straight on. Weights are f |cos i| over a chance of 1, and
+// what has none is black.
+typedef struct Deltas {
+  vec3 reflected, transmitted;
+  vec3 wi_transmitted;  // reflected: (-wo.x, -wo.y, wo.z)
+  mask straight;        // what is transmitted is not bent
+} Deltas;
+
+SUN_FN Deltas lobes_deltas(const Lobes *l, vec3 wo) {
+  Deltas d;
+  real cosine = clamp_real(wo.z, (real)(0.0f), (real)(1.0f));
+  Facet facet = facet_of(l, cosine);
+  real cosine_far;
+  fresnel_dielectric(cosine, l->eta, &cosine_far);
+  d.straight = (fabs(l->eta - 1.0f) < SUN_SAME_IOR) | !l->refracts;
+  vec3 refracted = refract_about(wo, make_vec3((real)(0.0f), (real)(0.0f), (real)(1.0f)), l->eta, cosine, cosine_far);
+  d.wi_transmitted = select3(d.straight, negate3(wo), refracted);
+  mask seen = l->specular & (wo.z > 0.0f);
+  mask leaves = d.straight | (cosine_far > 0.0f);
+  real thinning = d.straight ? (real)(1.0f) : 1.0f / (l->eta * l->eta);
+  d.reflected = select3(seen & l->delta_reflection, facet.reflected, splat3((real)(0.0f)));
+  d.transmitted = select3(seen & l->delta_transmission & leaves, scale3(facet.transmitted, thinning), splat3((real)(0.0f)));
+  return d;
+}
+
 SUN_FN BsdfEval bsdf_eval(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo, vec3 wi) {
   Lobes l = bsdf_lobes(b, tables, wo);
   return lobes_eval(&l, tables, wo, wi);

@@ -32,21 +32,26 @@ SUN_FN void film_contribute(const SUN_GLOBAL Frame *frame, const FilmView *film,
   film_add(&spare, frame->layer_bounce + depth, pixel, hash, sample, key, r, g, b);
 }
 
-// The same for the lanes in `on`: light that reached the path's last vertex along its ray.
-SUN_FN void film_contribute_lanes(const SUN_GLOBAL Frame *frame, const FilmView *film, mask on, const Path *path, uint_n depth, vec3 rgb) {
+// The same for the lanes in `on`.
+SUN_FN void film_contribute_keyed(const SUN_GLOBAL Frame *frame, const FilmView *film, mask on, const Path *path, uint_n key, uint_n depth, vec3 rgb) {
   int ons[LANES];
-  uint pixel[LANES], sample[LANES], vertex[LANES], depths[LANES];
+  uint pixel[LANES], sample[LANES], keys[LANES], depths[LANES];
   float r[LANES], g[LANES], b[LANES];
   LANES_STORE(on, ons);
   LANES_STORE(path->pixel, pixel);
   LANES_STORE(path->sample, sample);
-  LANES_STORE(path->vertex, vertex);
+  LANES_STORE(key, keys);
   LANES_STORE(depth, depths);
   LANES_STORE(rgb.x, r);
   LANES_STORE(rgb.y, g);
   LANES_STORE(rgb.z, b);
   for (int lane = 0; lane < LANES; lane++)
-    if (ons[lane]) film_contribute(frame, film, pixel[lane], sample[lane], SUN_FILM_KEY_EMISSION(vertex[lane]), depths[lane], r[lane], g[lane], b[lane]);
+    if (ons[lane]) film_contribute(frame, film, pixel[lane], sample[lane], keys[lane], depths[lane], r[lane], g[lane], b[lane]);
+}
+
+// Light that reached the path's last vertex along its ray.
+SUN_FN void film_contribute_lanes(const SUN_GLOBAL Frame *frame, const FilmView *film, mask on, const Path *path, uint_n depth, vec3 rgb) {
+  film_contribute_keyed(frame, film, on, path, SUN_FILM_KEY_EMISSION(path->vertex), depth, rgb);
 }
 
 SUN_NAMESPACE_END

@@ -24,18 +24,10 @@ SUN_FN real filter_offset(const SUN_GLOBAL float *tables, real u) {
   return lerp_real(lower, upper, x - cell);
 }
 
-// Filter importance sampling [Ernst06]: a sample belongs to one pixel, its position is drawn from the filter about the pixel's centre.
-SUN_FN CameraRay camera_ray(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL float *tables, const SamplerKey *key, uint_n pixel_x, uint_n pixel_y) {
+// The ray of a position on the film; on the lens as the sample says. Its weight is 1.
+SUN_FN CameraRay camera_ray_at(const SUN_GLOBAL Frame *frame, const SamplerKey *key, real x, real y) {
   CameraRay ray;
-  vec2 u = sample_2d(key, (uint_n)(SUN_DIM_FILTER));
-  real dx = filter_offset(tables, u.x), dy = filter_offset(tables, u.y);
-  // Where |x| is beyond this the filter is negative (Mitchell); the product of two factors decides the sign.
-  mask negative_x = fabs(dx) > (real)(frame->filter_negative_from), negative_y = fabs(dy) > (real)(frame->filter_negative_from);
-  real weight = (real)(frame->filter_weight);
-  weight = negative_x ? -weight : weight;
-  weight = negative_y ? -weight : weight;
-  ray.weight = weight;
-  real x = real_of_uint(pixel_x) + 0.5f + dx, y = real_of_uint(pixel_y) + 0.5f + dy;
+  ray.weight = (real)(1.0f);
   real sx = 2.0f * x / (float)frame->width - 1.0f, sy = 1.0f - 2.0f * y / (float)frame->height;
   const SUN_GLOBAL Camera *camera = &frame->camera;
   vec3 position = make_vec3((real)(camera->position[0]), (real)(camera->position[1]), (real)(camera->position[2]));
@@ -58,6 +50,20 @@ SUN_FN CameraRay camera_ray(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL floa
     ray.origin = add3(position, on_lens);
   }
   ray.direction = normalize3(direction);
+  return ray;
+}
+
+// Filter importance sampling [Ernst06]: a sample belongs to one pixel, its position is drawn from the filter about the pixel's centre.
+SUN_FN CameraRay camera_ray(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL float *tables, const SamplerKey *key, uint_n pixel_x, uint_n pixel_y) {
+  vec2 u = sample_2d(key, (uint_n)(SUN_DIM_FILTER));
+  real dx = filter_offset(tables, u.x), dy = filter_offset(tables, u.y);
+  // Where |x| is beyond this the filter is negative (Mitchell); the product of two factors decides the sign.
+  mask negative_x = fabs(dx) > (real)(frame->filter_negative_from), negative_y = fabs(dy) > (real)(frame->filter_negative_from);
+  real weight = (real)(frame->filter_weight);
+  weight = negative_x ? -weight : weight;
+  weight = negative_y ? -weight : weight;
+  CameraRay ray = camera_ray_at(frame, key, real_of_uint(pixel_x) + 0.5f + dx, real_of_uint(pixel_y) + 0.5f + dy);
+  ray.weight = weight;
   return ray;
 }
 

@@ -119,5 +119,14 @@ SUN_INLINE float farther(float lower, float upper, float origin) {
   return SUN_GREATER(a, b);
 }
 
+// A ray in an instance's space: t stays the same, so the direction is not normalised.
+SUN_INLINE void to_instance(const SUN_GLOBAL Instance *instance, const Ray *ray, float *origin, float *direction) {
+  for (int row = 0; row < 3; row++) {
+    const float a = instance->to_object[4 * row], b = instance->to_object[4 * row + 1], c = instance->to_object[4 * row + 2];
+    origin[row] = fma(a, ray->origin[0], fma(b, ray->origin[1], fma(c, ray->origin[2], instance->to_object[4 * row + 3])));
+    direction[row] = fma(a, ray->direction[0], fma(b, ray->direction[1], c * ray->direction[2]));
+  }
+}
+
 SUN_NAMESPACE_END
 #endif

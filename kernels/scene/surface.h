@@ -5,6 +5,7 @@
 #include "bsdf/bsdf.h"
 #include "math/elementary.h"
 #include "scene/scene.h"
+#include "scene/shape_surface.h"
 
 SUN_NAMESPACE_BEGIN
 
@@ -39,10 +40,6 @@ typedef struct Corners {
   uint_n flags;     // of the instance
   mask moved;       // not the identity
 } Corners;
-
-typedef struct Matrix {
-  real m[12];  // 3x4, row major
-} Matrix;
 
 SUN_INLINE void matrix_row(Matrix *matrix, int row, Quad quad) {
   matrix->m[4 * row] = real_of_bits(quad.x);
@@ -82,6 +79,18 @@ SUN_FN vec3 transform_direction(const Matrix *matrix, vec3 d) {
 SUN_FN vec3 transform_normal(const Matrix *to_object, vec3 n) {
   const real *m = to_object->m;
   return make_vec3(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z);
+}
+
+// What a shape's point has in place of a triangle's; after load_corners, whose corners are all one for shapes.
+SUN_FN ShapePoint point_of_shape(const Scene *scene, uint_n instance, uint_n flags, vec3 place) {
+  Matrix matrix = instance_to_world(scene, instance);
+  ShapePoint point = shape_point(&matrix, flags, place);
+#if SUN_TEXTURES
+  shape_coordinates(&point, flags, place);
+#else
+  point.uv[0] = point.uv[1] = (real)(0.0f);
+#endif
+  return point;
 }
 
 SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitive) {
@@ -138,7 +147,7 @@ typedef struct Surface {
   Frame3 shading;        // shading frame; its normal is on the ray's side too
   vec3 unbent;           // that normal before it was bent towards the ray
   real offset;           // of new rays, along `normal`
-  real area;             // of the triangle, world
+  real area;             // of the triangle, world; of a shape: 1 / the density of its sampled points here
   real cos_front;        // cosine between the front's normal and the way back along the ray: negative from behind
   mask front;            // seen from the front
   real uv0[2], uv1[2];
@@ -187,10 +196,24 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   real twice_area = sqrt(dot3(n, n));
   s.area = 0.5f * twice_area;
   vec3 front_normal = normalize3(n);
+  s.offset = surface_offset(&c);
+#if SUN_SHAPES
+  mask shape = hit->hit & is_shape(c.flags, SUN_INSTANCE_SHAPE);
+  real shape_uv[2];
+  shape_uv[0] = shape_uv[1] = (real)(0.0f);
+  if (ANY(shape)) {
+    ShapePoint point = point_of_shape(scene, hit->instance, c.flags, shape_place(c.flags, hit->u, hit->v));
+    s.position = select3(shape, point.position, s.position);
+    front_normal = select3(shape, point.normal, front_normal);
+    s.area = shape ? point.area : s.area;
+    s.offset = shape ? point.offset : s.offset;
+    shape_uv[0] = point.uv[0];
+    shape_uv[1] = point.uv[1];
+  }
+#endif
   s.cos_front = dot3(front_normal, wo);
   s.front = s.cos_front > 0.0f;
   s.normal = select3(s.front, front_normal, negate3(front_normal));
-  s.offset = surface_offset(&c);
   s.material = c.material;
   GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
 
@@ -205,6 +228,9 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   ns = select3(length2 > 1e-30f, normalize3(ns), front_normal);
   // A shading normal belongs to the front; one that points behind it (bad input) gives way to the geometric one.
   ns = select3(dot3(ns, front_normal) > 0.0f, ns, front_normal);
+#if SUN_SHAPES
+  ns = select3(shape, front_normal, ns);
+#endif
   ns = select3(s.front, ns, negate3(ns));
 
   for (int i = 0; i < 2; i++) s.uv0[i] = s.uv1[i] = (real)(0.0f);
@@ -212,6 +238,13 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   s.shading = frame_of_normal(ns);
 #if SUN_TEXTURES
   surface_coordinates(scene, &s, &c, hit->u, hit->v);
+#if SUN_SHAPES
+  for (int i = 0; i < 2; i++) {
+    s.uv0[i] = shape ? shape_uv[i] : s.uv0[i];
+    s.uv1[i] = shape ? shape_uv[i] : s.uv1[i];
+  }
+  for (int i = 0; i < 4; i++) s.color[i] = shape ? (real)(1.0f) : s.color[i];
+#endif
   if (scene->frame->flags & SUN_FRAME_EXTRAS) {
     // The tangent frame of the normal map: interpolated, not made orthogonal again, as the map was baked [Mikkelsen08].
     uint_n normal_slot;

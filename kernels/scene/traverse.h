@@ -8,6 +8,7 @@
 #else
 #include "scene/traverse_wide.h"
 #endif
+#include "scene/shape.h"
 
 // Kernels that trace: explicit vectors, from which a vectorizer has to keep its hands off (Intel's scalarizes them otherwise), or scalar code.
 #if SUN_LAYOUT == SUN_LAYOUT_BINARY
@@ -24,7 +25,7 @@ SUN_NAMESPACE_BEGIN
       uint top_root, const SUN_GLOBAL Fragment *fragments
 #define TREE_ARGUMENTS nodes, leaves, instance_list, roots, top_root, fragments
 
-SUN_INLINE TraceScene make_trace_scene(TREE_PARAMETERS, const SUN_GLOBAL Instance *instances, uint instance_count) {
+SUN_INLINE TraceScene make_trace_scene(TREE_PARAMETERS, const SUN_GLOBAL Instance *instances, uint instance_count, uint plane_count) {
   TraceScene scene;
   scene.nodes = (const SUN_GLOBAL TraceNode *)nodes;
   scene.leaves = (const SUN_GLOBAL TraceLeaf *)leaves;
@@ -34,6 +35,7 @@ SUN_INLINE TraceScene make_trace_scene(TREE_PARAMETERS, const SUN_GLOBAL Instanc
   scene.instances = instances;
   scene.top_root = top_root;
   scene.instance_count = instance_count;
+  scene.plane_count = plane_count;
   return scene;
 }
 
@@ -66,20 +68,6 @@ SUN_INLINE int prepare_world_ray(PreparedRay *world, const TraceScene *scene, co
   return prepare_ray(world, ray->origin, ray->direction, reach);
 }
 
-// An instance whose space is the world's.
-SUN_INLINE Place place_in_world(uint number, const Search *search) {
-  Place place;
-  place.instance = number;
-  const uint passed = search->passed_primitive;
-  place.first_primitive = number > search->passed_instance                                 ? 0
-                          : number < search->passed_instance || passed >= SUN_ID_PRIMITIVE ? SUN_NONE
-                                                                                           : passed + 1;
-  place.world.near = 0.0f;
-  place.world.far = SUN_INFINITY;
-  place.from = search->passed_t;
-  return place;
-}
-
 // Carries the ray into an instance's space; t stays the same, so the direction is not normalised. False where the instance cannot be hit.
 SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *ray, const PreparedRay *world, const Search *search,
                               PreparedRay *inside, Place *place) {
@@ -96,10 +84,9 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
   if (!(place->world.near <= place->world.far)) return 0;
   float origin[3], direction[3], reach[3], world_reach[3];
   for (int axis = 0; axis < 3; axis++) world_reach[axis] = farther(instance->lower[axis], instance->upper[axis], ray->origin[axis]);
+  to_instance(instance, ray, origin, direction);
   for (int row = 0; row < 3; row++) {
     const float a = instance->to_object[4 * row], b = instance->to_object[4 * row + 1], c = instance->to_object[4 * row + 2];
-    origin[row] = fma(a, ray->origin[0], fma(b, ray->origin[1], fma(c, ray->origin[2], instance->to_object[4 * row + 3])));
-    direction[row] = fma(a, ray->direction[0], fma(b, ray->direction[1], c * ray->direction[2]));
     // The mesh lies within its instance's world box, but for the rounding of both matrices.
     reach[row] = 1.0001f * fma(fabs(a), world_reach[0], fma(fabs(b), world_reach[1], fabs(c) * world_reach[2]));
   }
@@ -114,11 +101,16 @@ SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *sea
   if (!prepare_world_ray(&inside, scene, ray)) return 0;
   const PreparedRay world = inside;
   Place place = place_in_world(0, search);
+  if (SUN_SHAPES)
+    for (uint plane = scene->instance_count; plane < scene->instance_count + scene->plane_count; plane++)
+      if (search_shape(scene, plane, ray, &world, search) && any_one) return 1;
   ulong stack[SUN_TRACE_STACK];
   InstanceWalk walk = begin_instances(scene, alone, stack);
   uint number = alone ? 0 : next_instance(scene, &world, search->passed_t, search->best_t, stack, &walk);
   while (number != SUN_NONE) {
-    if (direct || enter_instance(scene, number, ray, &world, search, &inside, &place)) {
+    if (SUN_SHAPES && (scene->instances[number].flags & SUN_INSTANCE_SHAPE)) {
+      if (search_shape(scene, number, ray, &world, search) && any_one) return 1;
+    } else if (direct || enter_instance(scene, number, ray, &world, search, &inside, &place)) {
       if (search_mesh(scene, scene->roots[number], &inside, &place, search, any_one)) return 1;
     }
     number = alone ? SUN_NONE : next_instance(scene, &world, search->passed_t, search->best_t, stack, &walk);
@@ -126,16 +118,21 @@ SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *sea
   return 0;
 }
 
-SUN_INLINE Hit hit_of_search(const Search *search) {
+SUN_INLINE Hit hit_of_search(const TraceScene *scene, const Search *search) {
   Hit hit;
   hit.t = search->best_t;
+  hit.instance = search->found_instance;
+  hit.primitive = search->found_instance == SUN_NONE ? SUN_NONE : search->best_primitive;
+  hit.pad[0] = hit.pad[1] = hit.pad[2] = 0;
+  if (SUN_SHAPES && hit.instance != SUN_NONE && (scene->instances[hit.instance].flags & SUN_INSTANCE_SHAPE)) {
+    hit.u = search->u;
+    hit.v = search->v;
+    return hit;
+  }
   // Rounding may carry the barycentrics out of the triangle, and the sign of a zero is of no use.
   hit.u = search->u > 0.0f ? search->u < 1.0f ? search->u : 1.0f : 0.0f;
   const float rest = 1.0f - hit.u;
   hit.v = search->v > 0.0f ? search->v < rest ? search->v : rest : 0.0f;
-  hit.instance = search->found_instance;
-  hit.primitive = search->found_instance == SUN_NONE ? SUN_NONE : search->best_primitive;
-  hit.pad[0] = hit.pad[1] = hit.pad[2] = 0;
   return hit;
 }
 
@@ -143,7 +140,7 @@ SUN_INLINE Hit hit_of_search(const Search *search) {
 SUN_INLINE Hit closest_hit(const TraceScene *scene, Ray ray, uint want) {
   Search search = begin_search(&ray, want);
   search_scene(scene, &ray, &search, 0);
-  return hit_of_search(&search);
+  return hit_of_search(scene, &search);
 }
 
 SUN_INLINE int any_hit(const TraceScene *scene, Ray ray, uint want) {

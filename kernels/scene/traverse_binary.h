@@ -17,6 +17,7 @@ typedef struct TraceScene {
   const SUN_GLOBAL Instance *instances;
   uint top_root;
   uint instance_count;
+  uint plane_count;  // instances behind those
 } TraceScene;
 
 // A node that waits: its box's near t in the upper half (t >= 0, so integers sort like floats), its number in the lower one.

@@ -29,6 +29,7 @@ typedef struct TraceScene {
   const SUN_GLOBAL Instance *instances;
   uint top_root;
   uint instance_count;
+  uint plane_count;  // instances behind those
 } TraceScene;
 
 typedef struct LaneSet {

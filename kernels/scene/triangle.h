@@ -93,6 +93,20 @@ typedef struct Place {
   uint first_primitive;  // at t == passed_t hits count from this number on
 } Place;
 
+// An instance whose space is the world's.
+SUN_INLINE Place place_in_world(uint number, const Search *search) {
+  Place place;
+  place.instance = number;
+  const uint passed = search->passed_primitive;
+  place.first_primitive = number > search->passed_instance                                 ? 0
+                          : number < search->passed_instance || passed >= SUN_ID_PRIMITIVE ? SUN_NONE
+                                                                                           : passed + 1;
+  place.world.near = 0.0f;
+  place.world.far = SUN_INFINITY;
+  place.from = search->passed_t;
+  return place;
+}
+
 // Boxes of this instance with near > limit hold nothing that counts: every t there is clamped to at least that much, unless the world box pulls it
 // back.
 SUN_INLINE float box_limit(const Place *place, const Search *search) { return search->best_t < place->world.far ? search->best_t : SUN_INFINITY; }

@@ -6,7 +6,7 @@
 
 SUN_NAMESPACE_BEGIN
 
-#define SUN_EMITTER_TRIANGLE 0     // a = instance, b = primitive
+#define SUN_EMITTER_TRIANGLE 0     // a = instance, b = primitive; of a shape: the one that stands for it
 #define SUN_EMITTER_LIGHT 1        // a = index into Light[]
 #define SUN_EMITTER_ENVIRONMENT 2
 

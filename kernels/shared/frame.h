@@ -47,6 +47,8 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 #define SUN_MOST_LIGHT_SAMPLES 64
 #define SUN_MOST_INDIRECT_SAMPLES 1024
 
+#define SUN_WHITTED_DEPTH 32  // the most that `whitted` takes: as many rays of a tree may wait
+
 #define SUN_FILTER_TABLE 1024  // cells of the filter's inverse cdf
 
 typedef struct Frame {
@@ -62,7 +64,7 @@ typedef struct Frame {
   uint max_depth;
   uint roulette_depth;           // scatterings after which roulette begins
   uint emitter_count;
-  uint instance_count;
+  uint instance_count;           // that trees know; plane_count infinite planes stand behind them
   uint layer_bounce;             // film layers (shared/film.h): bounce.0, or SUN_NONE where bounces are not kept; bounce_layers of them
   uint bounce_layers;
   uint layer_albedo, layer_normal, layer_depth, layer_position, layer_object, layer_material;  // or SUN_NONE
@@ -84,7 +86,11 @@ typedef struct Frame {
   float absorption;              // chance to end at each scattering, whatever the throughput; negative: by the throughput
   uint indirect_samples;         // rays that leave a vertex
   uint strategy_s, strategy_t;   // bidirectional: vertices from the light's side and from the eye's, of the one strategy that counts; SUN_NONE: all
-  uint pad[3];
+  uint plane_count;
+  uint light_count;              // punctual ones, for integrators that ask each of them
+  float cutoff;                  // a ray whose worth is below this is not followed
+  float ambient[3];              // radiance that is about in all places, for what scatters it diffusely
+  uint pad;
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 

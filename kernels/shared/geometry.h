@@ -32,6 +32,18 @@ SUN_STATIC_ASSERT(sizeof(VertexExtra) == 48, vertex_extra_is_48_bytes);
 
 #define SUN_INSTANCE_IDENTITY 1u  // to_world is exactly the identity: rays and vertices are used as they are
 #define SUN_INSTANCE_MIRRORED 2u  // determinant < 0: the front, counter-clockwise in mesh space, reads clockwise in world space
+// An analytic shape, in a space of its own: a sphere of radius 1, or, in y = 0 with the front towards +y, a disk of radius 1, a quad from -1 to 1, and all
+// of the plane. One Triangle stands for it (its primitive number, its material), which no ray can hit. Planes have no bounds: their instances stand
+// behind all others, and trees know nothing of them.
+#define SUN_INSTANCE_SPHERE 16u
+#define SUN_INSTANCE_DISK 32u
+#define SUN_INSTANCE_QUAD 64u
+#define SUN_INSTANCE_PLANE 128u
+#define SUN_INSTANCE_SHAPE 240u         // any of them; with these bits, as ids of triangles have them:
+#define SUN_INSTANCE_SINGLE_SIDED 256u
+#define SUN_INSTANCE_PASSABLE 512u
+// A plane ends so far from its origin, in units of its own: beyond, floats tell its points no longer apart.
+#define SUN_PLANE_REACH 1073741824.0f  // 2^30
 
 typedef struct Instance {
   float to_world[12];   // 3x4, row major: world = M * (x, y, z, 1)

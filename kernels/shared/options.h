@@ -31,6 +31,11 @@
 #define SUN_PASSABLE 1
 #endif
 
+// 1 where the scene has analytic shapes: spheres, disks, quads, planes.
+#ifndef SUN_SHAPES
+#define SUN_SHAPES 1
+#endif
+
 // 1 where the scene has anything but diffuse surfaces; 1 where it has textures, or colours of vertices. 0 leaves the code out: compiled sooner, the same bits.
 #ifndef SUN_SPECULAR
 #define SUN_SPECULAR 1

@@ -47,7 +47,7 @@ SUN_NAMESPACE_BEGIN
 // One hit, as intersect leaves it for shade.
 typedef struct Hit {
   float t;         // along the ray; beyond every hit where instance is SUN_NONE
-  float u, v;      // barycentric: point = (1 - u - v) * corner 0 + u * corner 1 + v * corner 2
+  float u, v;      // barycentric: point = (1 - u - v) * corner 0 + u * corner 1 + v * corner 2; of a shape: scene/shape.h
   uint instance;   // SUN_NONE: nothing was hit
   uint primitive;  // without SUN_ID_ bits
   uint pad[3];

@@ -42,7 +42,7 @@ SUN_BODY void intersect_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, cons
   if (position + SUN_AHEAD < counts[SUN_COUNT_LIVE]) SUN_SOON(path_words + (size_t)rays[position + SUN_AHEAD] * SUN_PATH_WORDS);
   const uint word = status[slot];
   if ((word & (SUN_STATUS_ALIVE | SUN_STATUS_AGAIN)) != SUN_STATUS_ALIVE) return;
-  TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count);
+  TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count, frame->plane_count);
   Paths paths;
   paths.words = (SUN_GLOBAL uint *)path_words;
   paths.pool = frame->pool;

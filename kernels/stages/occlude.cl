@@ -5,15 +5,15 @@
 //   queues   shadow_rays
 //   holds    transmittance is multiplied nearest first, so its bits do not depend on the tree
 #include "path/contribute.h"
-#include "scene/surface.h"
 #include "scene/traverse.h"
+#include "transport/pass.h"
 
 SUN_BODY void occlude_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_PARAMETERS, const SUN_GLOBAL ShadowRay *shadow_rays,
                           const SUN_GLOBAL uint *queue, FilmCounts counts, FilmWords film_words, uint first, uint position) {
   if (position >= counts[SUN_COUNT_SHADOW]) return;
   const SUN_GLOBAL ShadowRay *shadow = shadow_rays + first + queue[position];
   if (position + SUN_AHEAD < counts[SUN_COUNT_SHADOW]) SUN_SOON(shadow_rays + first + queue[position + SUN_AHEAD]);
-  TraceScene tree = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count);
+  TraceScene tree = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count, frame->plane_count);
   const float4 from = vload4(0, shadow->origin), along = vload4(0, shadow->direction);  // with the word behind: see intersect.cl
   Ray ray;
   ray.origin[0] = from.x;
@@ -35,15 +35,8 @@ SUN_BODY void occlude_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_
     Hit hit = closest_hit(&tree, ray, SUN_WANT_PASSABLE);
     if (hit.instance == SUN_NONE) break;
     HitLanes lane = {hit.t, hit.u, hit.v, hit.instance, hit.primitive, 1};
-    Surface surface = make_surface(&scene, &lane, wo);
-    float alpha = surface_alpha(&scene, &surface, 1);
-    if (alpha > 0.0f) {
-      Bsdf bsdf = surface_bsdf(&scene, &surface, 1);
-      vec3 straight = bsdf_straight(&bsdf, to_local(&surface.shading, wo));
-      if (surface.material_flags & SUN_MATERIAL_UNLIT) straight = splat3(0.0f);
-      worth = mul3(worth, lerp3(splat3(1.0f), straight, alpha));
-      if (max_of3(make_vec3(fabs(worth.x), fabs(worth.y), fabs(worth.z))) == 0.0f) return;
-    }
+    worth = mul3(worth, passed_share(&scene, &lane, wo));
+    if (max_of3(make_vec3(fabs(worth.x), fabs(worth.y), fabs(worth.z))) == 0.0f) return;
     ray.passed_t = hit.t;
     ray.passed_instance = hit.instance;
     ray.passed_primitive = hit.primitive;

@@ -22,25 +22,25 @@ static Ray load_ray(__global const float8 *rays, __global const uint2 *passed, u
 }
 
 SUN_BODY void trace_closest_ray(__global const float8 *rays, __global const uint2 *passed, __global Hit *hits, uint want, TREE_PARAMETERS,
-                                __global const Instance *instances, uint instance_count, uint i) {
-  const TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, instance_count);
+                                __global const Instance *instances, uint instance_count, uint plane_count, uint i) {
+  const TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, instance_count, plane_count);
   hits[i] = closest_hit(&scene, load_ray(rays, passed, i), want);
 }
 
 SUN_BODY void trace_any_ray(__global const float8 *rays, __global const uint2 *passed, __global uint *blocked, uint want, TREE_PARAMETERS,
-                            __global const Instance *instances, uint instance_count, uint i) {
-  const TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, instance_count);
+                            __global const Instance *instances, uint instance_count, uint plane_count, uint i) {
+  const TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, instance_count, plane_count);
   blocked[i] = any_hit(&scene, load_ray(rays, passed, i), want) ? 1u : 0u;
 }
 
 SUN_TRACE_KERNEL void trace_closest(__global const float8 *rays, __global const uint2 *passed, __global Hit *hits, uint count, uint want,
-                                    TREE_PARAMETERS, __global const Instance *instances, uint instance_count) {
+                                    TREE_PARAMETERS, __global const Instance *instances, uint instance_count, uint plane_count) {
   const uint i = (uint)get_global_id(0);
-  if (i < count) trace_closest_ray(rays, passed, hits, want, TREE_ARGUMENTS, instances, instance_count, i);
+  if (i < count) trace_closest_ray(rays, passed, hits, want, TREE_ARGUMENTS, instances, instance_count, plane_count, i);
 }
 
 SUN_TRACE_KERNEL void trace_any(__global const float8 *rays, __global const uint2 *passed, __global uint *blocked, uint count, uint want,
-                                TREE_PARAMETERS, __global const Instance *instances, uint instance_count) {
+                                TREE_PARAMETERS, __global const Instance *instances, uint instance_count, uint plane_count) {
   const uint i = (uint)get_global_id(0);
-  if (i < count) trace_any_ray(rays, passed, blocked, want, TREE_ARGUMENTS, instances, instance_count, i);
+  if (i < count) trace_any_ray(rays, passed, blocked, want, TREE_ARGUMENTS, instances, instance_count, plane_count, i);
 }

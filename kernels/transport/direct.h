@@ -37,12 +37,33 @@ SUN_FN Surface triangle_point(const Scene *scene, uint_n instance, uint_n primit
   s.area = sqrt(dot3(n, n)) * 0.5f;
   s.normal = normalize3(n);
   s.offset = surface_offset(&c);
+#if SUN_SHAPES
+  mask shape = is_shape(c.flags, SUN_INSTANCE_SHAPE);
+  real shape_uv[2];
+  shape_uv[0] = shape_uv[1] = (real)(0.0f);
+  if (ANY(shape)) {
+    ShapePoint of_shape = point_of_shape(scene, instance, c.flags, sample_shape_place(c.flags, u));
+    s.position = select3(shape, of_shape.position, s.position);
+    s.normal = select3(shape, of_shape.normal, s.normal);
+    s.area = shape ? of_shape.area : s.area;
+    s.offset = shape ? of_shape.offset : s.offset;
+    shape_uv[0] = of_shape.uv[0];
+    shape_uv[1] = of_shape.uv[1];
+  }
+#endif
   s.material = c.material;
   GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
   s.uv0[0] = s.uv0[1] = s.uv1[0] = s.uv1[1] = (real)(0.0f);
   for (int i = 0; i < 4; i++) s.color[i] = (real)(1.0f);
 #if SUN_TEXTURES
   surface_coordinates(scene, &s, &c, b.x, b.y);
+#if SUN_SHAPES
+  for (int i = 0; i < 2; i++) {
+    s.uv0[i] = shape ? shape_uv[i] : s.uv0[i];
+    s.uv1[i] = shape ? shape_uv[i] : s.uv1[i];
+  }
+  for (int i = 0; i < 4; i++) s.color[i] = shape ? (real)(1.0f) : s.color[i];
+#endif
 #endif
   return s;
 }
@@ -156,29 +177,44 @@ SUN_FN void direct_ray(const Surface *s, const EmitterSample *sample, DirectSamp
   direct->t_max = sample->has_target ? (real)(1.0f) : (real)(SUN_FAR);
 }
 
-// A shadow ray for LANES surfaces. `throughput` is not in it.
-SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, real u_choice, vec2 u_point, mask active) {
+// The shadow ray of a sample, where `valid`. A light is a delta: no ray finds it by chance, so it keeps its whole weight.
+SUN_FN DirectSample direct_of(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, const EmitterSample *sample, mask valid) {
   DirectSample direct;
-  const SUN_GLOBAL Frame *frame = scene->frame;
-  vec3 black = splat3((real)(0.0f));
-  EmitterSample sample = sample_emitter(scene, s, u_choice, u_point, active);
-  mask valid = active & (sample.pdf > 0.0f) & (max_of3(sample.emission) > 0.0f);
-  direct.contribution = black;
+  direct.contribution = splat3((real)(0.0f));
   if (ANY(valid)) {
-    vec3 wi_local = to_local(&s->shading, sample.direction);
+    vec3 wi_local = to_local(&s->shading, sample->direction);
     BsdfEval eval = lobes_eval(lobes, scene->tables, wo_local, wi_local);
     // The true side has to agree with the shading side, or light leaks through.
-    mask same_side = (dot3(sample.direction, s->normal) > 0.0f) == (wi_local.z > 0.0f);
+    mask same_side = (dot3(sample->direction, s->normal) > 0.0f) == (wi_local.z > 0.0f);
     valid = valid & same_side & (max_of3(eval.f_cos) > 0.0f);
-    // A light is a delta: no ray finds it by chance, so it keeps its whole weight.
     real weight = (real)(1.0f);
-    if (frame->flags & SUN_FRAME_WEIGHTED) weight = sample.is_light ? weight : power_heuristic(sample.pdf, eval.pdf);
-    real scale = valid ? weight / (valid ? sample.pdf : (real)(1.0f)) : (real)(0.0f);
-    direct.contribution = select3(valid, scale3(mul3(eval.f_cos, sample.emission), scale), black);
+    if (scene->frame->flags & SUN_FRAME_WEIGHTED) weight = sample->is_light ? weight : power_heuristic(sample->pdf, eval.pdf);
+    real scale = valid ? weight / (valid ? sample->pdf : (real)(1.0f)) : (real)(0.0f);
+    direct.contribution = select3(valid, scale3(mul3(eval.f_cos, sample->emission), scale), direct.contribution);
   }
-  direct_ray(s, &sample, &direct);
+  direct_ray(s, sample, &direct);
   direct.valid = valid;
   return direct;
+}
+
+// A ray to one punctual light, wherever it is seen from: its pdf is 1.
+SUN_FN DirectSample direct_from_light(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, uint light, mask active) {
+  LightSample of_light = light_sample(scene->lights, (uint_n)(light), s->position);
+  EmitterSample sample;
+  sample.emission = of_light.radiance;
+  sample.has_target = of_light.distance < SUN_FAR;
+  sample.target = add3(s->position, scale3(of_light.direction, sample.has_target ? of_light.distance : (real)(0.0f)));
+  sample.direction = of_light.direction;
+  sample.pdf = (real)(1.0f);
+  sample.spread = (real)(0.0f);
+  sample.is_light = active;
+  return direct_of(scene, s, lobes, wo_local, &sample, active & (max_of3(of_light.radiance) > 0.0f));
+}
+
+// A shadow ray for LANES surfaces. `throughput` is not in it.
+SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, real u_choice, vec2 u_point, mask active) {
+  EmitterSample sample = sample_emitter(scene, s, u_choice, u_point, active);
+  return direct_of(scene, s, lobes, wo_local, &sample, active & (sample.pdf > 0.0f) & (max_of3(sample.emission) > 0.0f));
 }
 
 SUN_NAMESPACE_END

@@ -15,7 +15,7 @@ namespace sunstone::test {
 namespace {
 
 constexpr double false_alarms = 1e-6;  // a run of this program
-constexpr int tests_here = 14;         // each takes its share
+constexpr int tests_here = 15;         // each takes its share
 constexpr std::uint32_t seeds = 48;    // of few samples each: more degrees of freedom for the same work
 
 struct Work {
@@ -137,6 +137,25 @@ TEST(Agree, LampOverGloss) {
   add(scene, quad({0, 1.2f, -0.6f}, {0.7f, 0, 0}, {0, 0, 0.5f}), lamp({4, 5, 6}));
   add_camera(scene, {0, 1.1f, 1.6f}, {0, 0, -0.2f}, 30);
   expect_agreement(Case(std::move(scene)), picture(24, 16, 1), {64, 256}, path_and_pure);
+}
+
+// Lamps that are analytic shapes, of unequal power, one an ellipsoid and one seen from both sides, over a plane: shadow rays and chance have about equal
+// shares.
+TEST(Agree, ShapesThatShine) {
+  Scene scene;
+  const auto shape = [&](Shape::Kind kind, const Material &material, const glm::mat4x3 &transform) {
+    scene.materials.push_back(material);
+    scene.shapes.push_back({kind, "shape", static_cast<int>(scene.materials.size()) - 1, transform});
+  };
+  shape(Shape::Kind::plane, matt({0.7f, 0.6f, 0.5f}), scaled({1, 1, 1}, {0, 0, 0}));
+  shape(Shape::Kind::sphere, metal({0.9f, 0.8f, 0.7f}, 0.5f), scaled({0.4f, 0.4f, 0.4f}, {0, 0.4f, 0.3f}));
+  shape(Shape::Kind::sphere, lamp({2, 1.5f, 1}), scaled({0.5f, 0.8f, 0.3f}, {-1, 1, 0}));
+  shape(Shape::Kind::disk, lamp({1, 2, 3}), {{0.5f, 0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0, -0.7f}, {1.2f, 1.2f, 0}});
+  Material both = lamp({1.5f, 1.5f, 3});
+  both.double_sided = true;
+  shape(Shape::Kind::quad, both, {{0.5f, 0, 0}, {0, 0.1f, 0.5f}, {0, 0.5f, -0.1f}, {0, 0.8f, -0.9f}});
+  add_camera(scene, {0, 1.6f, 3.2f}, {0, 0.4f, 0}, 45);
+  expect_agreement(Case(std::move(scene)), picture(48, 32, 3), {32, 64}, path_and_pure);
 }
 
 // Ways of the same integrator, beside `path`.

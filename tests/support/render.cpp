@@ -29,7 +29,7 @@ Kept &kept() {
 }
 
 const Programs &programs_for(const Variant &v, std::size_t work_group) {
-  const unsigned features = (v.passable ? 1u : 0u) | (v.specular ? 2u : 0u) | (v.textures ? 4u : 0u) | (v.branching ? 8u : 0u) | (v.bidirectional ? 16u : 0u);
+  const unsigned features = (v.passable ? 1u : 0u) | (v.specular ? 2u : 0u) | (v.textures ? 4u : 0u) | (v.branching ? 8u : 0u) | (v.bidirectional ? 16u : 0u) | (v.shapes ? 32u : 0u);
   auto &found = kept().programs[{work_group, v.lanes, v.layout, v.columns, v.chunk, features}];
   if (!found) found = std::make_unique<Programs>(test_device(work_group), v);
   return *found;
@@ -47,6 +47,7 @@ Variant variant_of(const Case &scene, const RenderSettings &settings, const Ways
     const FlatScene &flat = scene.flat(v.layout);
     v.passable = flat.has_passable;
     v.specular = flat.has_specular;
+    v.shapes = flat.shape_count > 0;
     v.textures = flat.has_textures;
   }
   return v;

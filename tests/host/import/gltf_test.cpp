@@ -271,6 +271,63 @@ TEST(GltfNodes, Lights) {
     for (int c = 0; c < 3; c++) EXPECT_NEAR(scene.lights[i].direction[c], c == 1 ? -1.0f : 0.0f, 1e-7f);
 }
 
+TEST(GltfShapes, OfTheExtensionAndOfOurOwn) {
+  using Kind = Shape::Kind;
+  GltfBuilder file;
+  file.root["materials"] = {{{"name", "a"}}, {{"name", "b"}}};
+  file.root["extensionsUsed"] = file.root["extensionsRequired"] = {"KHR_implicit_shapes"};
+  file.root["extensions"]["KHR_implicit_shapes"]["shapes"] = {{{"type", "box"}}, {{"type", "sphere"}, {"sphere", {{"radius", 3}}}}, {{"type", "sphere"}}};
+  const auto node = [](const json &shape) { return json{{"name", "n"}, {"translation", {1, 2, 3}}, {"extras", {{"sunstone_shape", shape}}}}; };
+  file.root["nodes"] = {node({{"shape", 1}, {"material", 1}}),
+                        node({{"shape", 2}}),
+                        node({{"type", "disk"}, {"radius", 0.25}, {"material", 0}}),
+                        node({{"type", "quad"}, {"size", {4, 6}}}),
+                        node({{"type", "quad"}}),
+                        node({{"type", "plane"}}),
+                        json{{"extras", "any text"}},
+                        json{{"extras", {{"other", 1}}}}};
+  file.root["nodes"][3]["scale"] = {2, 1, -1};
+  file.root["scenes"][0]["nodes"] = {0, 1, 2, 3, 4, 5, 6, 7};
+  file.root.erase("meshes");
+  const Scene scene = file.import();
+  ASSERT_EQ(scene.shapes.size(), 6u);
+  const Kind kinds[] = {Kind::sphere, Kind::sphere, Kind::disk, Kind::quad, Kind::quad, Kind::plane};
+  const glm::vec3 sizes[] = {{3, 3, 3}, {0.5f, 0.5f, 0.5f}, {0.25f, 0.25f, 0.25f}, {4, 2, -3}, {0.5f, 0.5f, 0.5f}, {1, 1, 1}};
+  for (std::size_t i = 0; i < 6; i++) {
+    EXPECT_EQ(scene.shapes[i].kind, kinds[i]) << i;
+    expect_near(scene.shapes[i].transform, {{sizes[i].x, 0, 0}, {0, sizes[i].y, 0}, {0, 0, sizes[i].z}, {1, 2, 3}}, 1e-6f);
+  }
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_EQ(scene.materials[static_cast<std::size_t>(scene.shapes[0].material)].name, "b");
+  EXPECT_EQ(scene.materials[static_cast<std::size_t>(scene.shapes[2].material)].name, "a");
+  EXPECT_EQ(scene.shapes[1].material, -1);
+}
+
+TEST(GltfShapes, WrongOnesAreNamed) {
+  GltfBuilder file;
+  file.root["extensions"]["KHR_implicit_shapes"]["shapes"] = {{{"type", "box"}}, {{"type", "sphere"}, {"sphere", {{"radius", -1}}}}, {{"sphere", 1}}};
+  const auto refusal = [&](const json &shape) {
+    file.root["nodes"][0]["extras"]["sunstone_shape"] = shape;
+    return file.refusal();
+  };
+  const std::string place = "test.glb: nodes[0].extras.sunstone_shape";
+  for (const auto &[shape, told] : std::vector<std::pair<json, std::string>>{
+           {7, place + ": has to be an object"},
+           {json::object(), place + ".type: is missing"},
+           {{{"type", "torus"}}, place + ".type: \"torus\" is none of disk, quad, plane"},
+           {{{"type", 3}}, place + ".type: has to be a string"},
+           {{{"shape", 9}}, place + ".shape: index 9, but there are 3 shapes"},
+           {{{"shape", 0}}, "extensions.KHR_implicit_shapes.shapes[0].type: \"box\" is not rendered"},
+           {{{"shape", 1}}, "shapes[1].sphere.radius: a size has to be above 0"},
+           {{{"shape", 2}}, "shapes[2].type: is missing"},
+           {{{"shape", 1}, {"type", "disk"}}, place + ".type: stands beside"},
+           {{{"type", "disk"}, {"radius", 0}}, place + ".radius: a size has to be above 0"},
+           {{{"type", "quad"}, {"size", {1}}}, place + ".size: has 1 number"},
+           {{{"type", "quad"}, {"size", {1, "2"}}}, place + ".size[1]: has to be a number"},
+           {{{"type", "plane"}, {"material", 0}}, place + ".material: index 0, but there are 0 materials"}})
+    EXPECT_NE(refusal(shape).find(told), std::string::npos) << shape << ": " << refusal(shape);
+}
+
 TEST(GltfFile, RequiredExtensionsThatAreLackingAreNamed) {
   GltfBuilder file;
   for (const char *name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_texture_basisu", "KHR_materials_sheen", "X\n"}) {

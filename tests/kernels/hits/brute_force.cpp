@@ -73,7 +73,7 @@ void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell
 
 TraceScene tree_scene(const FlatScene &scene, const Tree &tree) {
   return make_trace_scene(reinterpret_cast<const uchar *>(tree.nodes.data()), reinterpret_cast<const uchar *>(tree.leaves.data()),
-                          tree.instance_list.data(), tree.roots.data(), tree.top_root, scene.fragments.data(), scene.instances.data(), uint(scene.instances.size()));
+                          tree.instance_list.data(), tree.roots.data(), tree.top_root, scene.fragments.data(), scene.instances.data(), uint(scene.instances.size() - scene.plane_count), uint(scene.plane_count));
 }
 
 }  // namespace
@@ -83,7 +83,8 @@ Hit brute_force(const FlatScene &scene, const TracedRay &from, uint want) {
   Search search = begin_search(&ray, want);
   each_hit(scene, ray, search,
            [](Search &s, const Place &place, float t, float u, float v, uint primitive) { take_hit(&s, &place, t, u, v, primitive); });
-  return hit_of_search(&search);
+  const Bare bare(scene);
+  return hit_of_search(&bare.scene, &search);
 }
 
 std::vector<Hit> all_hits(const FlatScene &scene, const TracedRay &from, uint want) {
@@ -93,7 +94,8 @@ std::vector<Hit> all_hits(const FlatScene &scene, const TracedRay &from, uint wa
   each_hit(scene, ray, search, [&](const Search &s, const Place &place, float t, float u, float v, uint primitive) {
     Search one = s;
     take_hit(&one, &place, t, u, v, primitive);
-    hits.push_back(hit_of_search(&one));
+    const Bare bare(scene);
+    hits.push_back(hit_of_search(&bare.scene, &one));
   });
   std::sort(hits.begin(), hits.end(), [](const Hit &a, const Hit &b) {
     return a.t != b.t ? a.t < b.t : a.instance != b.instance ? a.instance < b.instance : a.primitive < b.primitive;

@@ -33,7 +33,8 @@ void Tracer::load(const FlatScene &scene) {
   fragments_ = Buffer<kernel::Fragment>(device_, std::span<const kernel::Fragment>(scene.fragments), "fragments");
   instances_ = Buffer<kernel::Instance>(device_, std::span<const kernel::Instance>(scene.instances), "instances");
   top_root_ = tree.top_root;
-  instance_count_ = uint(scene.instances.size());
+  instance_count_ = uint(scene.instances.size() - scene.plane_count);
+  plane_count_ = uint(scene.plane_count);
 }
 
 template <class T>
@@ -49,7 +50,7 @@ std::vector<T> Tracer::run(const char *name, std::span<const TracedRay> rays, ui
   const Buffer<T> result(device_, rays.size(), "result");
   Kernel kernel(program_, name);
   kernel.run(rays.size(), ray_buffer, passed_buffer, result, uint(rays.size()), want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_,
-             instance_count_);
+             instance_count_, plane_count_);
   return result.download();
 }
 

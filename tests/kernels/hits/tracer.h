@@ -31,7 +31,7 @@ class Tracer {
   Buffer<kernel::uint> list_, roots_;
   Buffer<kernel::Fragment> fragments_;
   Buffer<kernel::Instance> instances_;
-  kernel::uint top_root_ = 0, instance_count_ = 0;
+  kernel::uint top_root_ = 0, instance_count_ = 0, plane_count_ = 0;
 };
 
 }  // namespace sunstone::hits

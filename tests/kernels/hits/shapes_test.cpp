@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// Analytic shapes: hits in agreement with closed forms in double precision, the same to the bit on every layout, none by rays that run along a plane, and
+// each of a sphere's two in turn.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "flatten/bvh.h"
+#include "kernels/hits/tracer.h"
+#include "scene/ray.h"
+
+namespace sunstone::hits {
+namespace {
+
+using kernel::Hit;
+using kernel::uint;
+
+glm::mat4x3 placed(glm::vec3 x, glm::vec3 y, glm::vec3 z, glm::vec3 at) { return {x, y, z, at}; }
+
+// One of each kind, and a mesh beside them; some are turned, sheared, mirrored. Materials: 0 double-sided, 1 single-sided.
+Scene some_shapes(bool with_mesh) {
+  Scene scene;
+  scene.name = "shapes";
+  scene.materials.resize(2);
+  scene.materials[0].double_sided = true;
+  using Kind = Shape::Kind;
+  scene.shapes = {{Kind::sphere, "ball", 0, placed({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 0})},
+                  {Kind::plane, "floor", 0, placed({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -0.5f, 0})},
+                  {Kind::sphere, "egg", 1, placed({0.5f, 0.1f, 0}, {-0.2f, 1.1f, 0.3f}, {0, 0.2f, -0.7f}, {2.5f, 0.7f, -1})},
+                  {Kind::disk, "disk", 1, placed({0.8f, 0, 0.3f}, {0, 0.8f, 0}, {-0.3f, 0.1f, 0.8f}, {-2, 0.5f, 0.5f})},
+                  {Kind::quad, "quad", 0, placed({0, 1, 0}, {1, 0, 0}, {0, 0, 0.4f}, {-1, 2, -2})},
+                  {Kind::plane, "slope", 1, placed({1, 0.2f, 0}, {-0.2f, 1, 0}, {0, 0, 1}, {0, -4, 0})}};
+  if (with_mesh) {
+    Primitive p;
+    p.positions = {{-3, 0, -3}, {3, 0, -3}, {0, 4, -3}};
+    p.indices = {0, 1, 2};
+    scene.meshes.push_back({"triangle", {p}});
+    scene.instances.push_back({"triangle", 0, glm::mat4x3(1)});
+  }
+  return scene;
+}
+
+FlatScene flattened(const Scene &scene) {
+  Notices notices;
+  FlattenOptions options;
+  options.layout = Layout::binary;
+  return flatten(scene, options, notices);
+}
+
+TracedRay ray_of(glm::dvec3 origin, glm::dvec3 direction, float t_max = INFINITY) {
+  TracedRay ray{};
+  for (int c = 0; c < 3; c++) {
+    ray.ray.origin[c] = static_cast<float>(origin[c]);
+    ray.ray.direction[c] = static_cast<float>(direction[c]);
+  }
+  ray.ray.t_max = t_max;
+  return ray;
+}
+
+std::vector<TracedRay> random_rays(int count, double spread) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-spread, spread), aim(-2.5, 2.5);
+  std::vector<TracedRay> rays;
+  for (int i = 0; i < count; i++) {
+    const glm::dvec3 origin(place(random), place(random), place(random)), target(aim(random), aim(random), aim(random));
+    rays.push_back(ray_of(origin, (target - origin) * 0.3));
+  }
+  return rays;
+}
+
+// What a shape does to a ray, by the formulas: the distances, and how sure they are.
+struct Expected {
+  double t = INFINITY;
+  double doubt = 0;  // distance of the ray from where the answer changes, in the shape's space
+  std::size_t shape = 0;
+};
+
+Expected closed_form(const Scene &scene, const TracedRay &ray) {
+  Expected best;
+  best.doubt = INFINITY;
+  for (std::size_t s = 0; s < scene.shapes.size(); s++) {
+    const Shape &shape = scene.shapes[s];
+    const glm::dmat3 m(glm::dvec3(shape.transform[0]), glm::dvec3(shape.transform[1]), glm::dvec3(shape.transform[2]));
+    const glm::dmat3 inverse = glm::inverse(m);
+    const glm::dvec3 o = inverse * (glm::dvec3(ray.ray.origin[0], ray.ray.origin[1], ray.ray.origin[2]) - glm::dvec3(shape.transform[3]));
+    const glm::dvec3 d = inverse * glm::dvec3(ray.ray.direction[0], ray.ray.direction[1], ray.ray.direction[2]);
+    const bool single = !scene.materials[static_cast<std::size_t>(shape.material)].double_sided;
+    std::vector<std::pair<double, bool>> met;  // t, from behind
+    if (shape.kind == Shape::Kind::sphere) {
+      const double a = glm::dot(d, d), b = glm::dot(o, d), c = glm::dot(o, o) - 1, discriminant = b * b - a * c;
+      best.doubt = std::min(best.doubt, std::abs(discriminant) / a);
+      if (discriminant >= 0) met = {{(-b - std::sqrt(discriminant)) / a, false}, {(-b + std::sqrt(discriminant)) / a, true}};
+    } else {
+      const double t = -o.y / d.y;
+      const glm::dvec3 p = o + t * d;
+      const double reach = shape.kind == Shape::Kind::disk ? std::hypot(p.x, p.z) : std::max(std::abs(p.x), std::abs(p.z));
+      if (shape.kind != Shape::Kind::plane) best.doubt = std::min(best.doubt, std::abs(reach - 1));
+      best.doubt = std::min(best.doubt, 1e-3 * std::abs(d.y) / glm::length(d));  // all but along it, floats tell the distance poorly
+      if (shape.kind == Shape::Kind::plane || reach <= 1) met = {{t, d.y > 0}};
+    }
+    for (const auto &[t, behind] : met) {
+      if (single && behind) continue;
+      best.doubt = std::min(best.doubt, std::abs(t));
+      if (t > 0 && t < best.t) {
+        best.t = t;
+        best.shape = s;
+      }
+    }
+  }
+  return best;
+}
+
+// The instance of a scene's shape.
+std::size_t instance_of(const FlatScene &flat, std::size_t shape) {
+  for (std::size_t i = 0; i < flat.instances.size(); i++)
+    if (flat.instance_object[i] == shape + 1) return i;
+  return flat.instances.size();
+}
+
+TEST(Shapes, AreHitWhereTheFormulasSay) {
+  const Scene scene = some_shapes(false);
+  const FlatScene flat = flattened(scene);
+  const Tree tree = build_tree(flat, Layout::binary);
+  ASSERT_EQ(flat.shape_count, 6u);
+  ASSERT_EQ(flat.plane_count, 2u);
+  std::vector<int> seen(scene.shapes.size());
+  int misses = 0;
+  for (const TracedRay &ray : random_rays(40000, 6)) {
+    const Expected expected = closed_form(scene, ray);
+    if (expected.doubt < 1e-5) continue;
+    const Hit hit = host_closest(flat, tree, ray, SUN_WANT_ALL);
+    ASSERT_EQ(hit.instance == SUN_NONE, std::isinf(expected.t));
+    ASSERT_EQ(host_any(flat, tree, ray, SUN_WANT_ALL), !std::isinf(expected.t));
+    if (hit.instance == SUN_NONE) {
+      misses++;
+      continue;
+    }
+    seen[expected.shape]++;
+    ASSERT_EQ(hit.instance, instance_of(flat, expected.shape));
+    ASSERT_EQ(flat.triangles[hit.primitive].material, static_cast<uint>(scene.shapes[expected.shape].material));
+    ASSERT_NEAR(hit.t, expected.t, 2e-5 * (1 + expected.t));
+  }
+  for (std::size_t s = 0; s < seen.size(); s++) EXPECT_GT(seen[s], 100) << scene.shapes[s].name;
+  EXPECT_GT(misses, 100);
+}
+
+TEST(Shapes, OfEveryLayoutTheSameBits) {
+  const std::optional<Device> device = test_device();
+  if (!device) GTEST_SKIP() << "SKIP: no OpenCL device";
+  for (const bool with_mesh : {false, true}) {
+    const FlatScene flat = flattened(some_shapes(with_mesh));
+    const Tree tree = build_tree(flat, Layout::binary);
+    std::vector<TracedRay> rays = random_rays(3000, 6);
+    const std::size_t fresh = rays.size();
+    for (std::size_t i = 0; i < fresh; i++) {  // and on behind the first hit
+      const Hit hit = host_closest(flat, tree, rays[i], SUN_WANT_ALL);
+      if (hit.instance == SUN_NONE) continue;
+      TracedRay on = rays[i];
+      on.ray.passed_t = hit.t;
+      on.passed_instance = hit.instance;
+      on.passed_primitive = hit.primitive;
+      rays.push_back(on);
+    }
+    for (const Layout layout : {Layout::binary, Layout::wide8, Layout::wide16}) {
+      const Tracer tracer(*device, flat, layout);
+      const std::vector<Hit> hits = tracer.closest(rays);
+      const std::vector<uint> any = tracer.any(rays);
+      std::size_t wrong = 0, wrong_any = 0;
+      for (std::size_t i = 0; i < rays.size(); i++) {
+        const Hit expected = host_closest(flat, tree, rays[i], SUN_WANT_ALL);
+        wrong += !same(hits[i], expected);
+        wrong_any += (any[i] != 0) != (expected.instance != SUN_NONE);
+      }
+      EXPECT_EQ(wrong, 0u) << layout_name(layout) << (with_mesh ? " with a mesh" : "");
+      EXPECT_EQ(wrong_any, 0u) << layout_name(layout);
+    }
+  }
+}
+
+// One after the other, each once: a ray goes on strictly behind what it has passed.
+TEST(Shapes, ASphereIsMetTwice) {
+  Scene scene = some_shapes(false);
+  scene.shapes.resize(1);
+  const FlatScene flat = flattened(scene);
+  const Tree tree = build_tree(flat, Layout::binary);
+  TracedRay ray = ray_of({0.3, 1.2, 5}, {0, 0, -1});
+  std::vector<float> met;
+  for (int i = 0; i < 4; i++) {
+    const Hit hit = host_closest(flat, tree, ray, SUN_WANT_ALL);
+    if (hit.instance == SUN_NONE) break;
+    met.push_back(hit.t);
+    ray.ray.passed_t = hit.t;
+    ray.passed_instance = hit.instance;
+    ray.passed_primitive = hit.primitive;
+  }
+  const float half = std::sqrt(1.0f - 0.09f - 0.04f);
+  ASSERT_EQ(met.size(), 2u);
+  EXPECT_NEAR(met[0], 5 - half, 1e-6);
+  EXPECT_NEAR(met[1], 5 + half, 1e-6);
+}
+
+// Rays along a plane, a quad, a disk: within it and beside it. None is a hit, and none is a NaN that counts.
+TEST(Shapes, AreNotMetByRaysAlongThem) {
+  for (const Shape::Kind kind : {Shape::Kind::plane, Shape::Kind::quad, Shape::Kind::disk}) {
+    Scene scene = some_shapes(false);
+    scene.shapes = {{kind, "flat", 0, glm::mat4x3(1)}};
+    const FlatScene flat = flattened(scene);
+    const Tree tree = build_tree(flat, Layout::binary);
+    for (const double height : {0.0, 1e-7, 1.0, -1.0})
+      for (int i = 0; i < 64; i++) {
+        const double angle = i * 0.1;
+        const TracedRay ray = ray_of({-3 * std::cos(angle), height, -3 * std::sin(angle)}, {std::cos(angle), 0, std::sin(angle)});
+        EXPECT_EQ(host_closest(flat, tree, ray, SUN_WANT_ALL).instance, SUN_NONE);
+        EXPECT_FALSE(host_any(flat, tree, ray, SUN_WANT_ALL));
+      }
+    // And by those that all but run along it, they are: at the distance that the slope says.
+    const Hit hit = host_closest(flat, tree, ray_of({-0.5, 1e-4, 0}, {1, -2e-4, 0}), SUN_WANT_ALL);
+    ASSERT_NE(hit.instance, SUN_NONE);
+    EXPECT_NEAR(hit.t, 0.5, 1e-4);
+    EXPECT_NEAR(hit.u, 0.0, 1e-4);
+  }
+}
+
+// Grazing rays: within a few millionths of its radius a sphere has the outline it should, near and far.
+TEST(Shapes, KeepTheirOutlineFarAway) {
+  Scene scene = some_shapes(false);
+  for (const float distance : {3.0f, 100.0f, 1000.0f}) {
+    scene.shapes = {{Shape::Kind::sphere, "ball", 0, glm::mat4x3(1)}};
+    const FlatScene flat = flattened(scene);
+    const Tree tree = build_tree(flat, Layout::binary);
+    const double error = 4e-7 * static_cast<double>(distance);
+    for (int i = 0; i < 200; i++) {
+      const double angle = i * 0.0314;
+      const auto at = [&](double radius) { return ray_of({radius * std::cos(angle), radius * std::sin(angle), distance}, {0, 0, -1}); };
+      EXPECT_NE(host_closest(flat, tree, at(1 - error - 1e-6), SUN_WANT_ALL).instance, SUN_NONE) << distance;
+      EXPECT_EQ(host_closest(flat, tree, at(1 + error + 1e-6), SUN_WANT_ALL).instance, SUN_NONE) << distance;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace sunstone::hits
