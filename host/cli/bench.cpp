@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "cli/session.h"
+#include "math/elementary.h"
 
 namespace sunstone {
 
@@ -25,7 +26,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
   RenderOptions render;
   std::string json;
-  unsigned repeats = 5, rays = 1024, reference_spp = 1024, spp = 64;
+  unsigned repeats = 5, rays = 1024, reference_spp = 1024, spp = 64, frames = 60;
 };
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -170,6 +171,60 @@ void scene(Options &o, Notices &notices) {
   finish(o, {{"scene", o.render.scene}, {"samples_per_s", median}, {"best_samples_per_s", rates.back()}, {"rays_per_s", median * rays}, {"relmse", series}}, session.device.info());
 }
 
+// The scene's own camera, turned about the vertical through the scene's centre: once around in so many frames.
+std::vector<kernel::Camera> fly_around(const LoadedScene &loaded, unsigned frames) {
+  const float x = 0.5f * (loaded.flat.bounds.lower.x + loaded.flat.bounds.upper.x), z = 0.5f * (loaded.flat.bounds.lower.z + loaded.flat.bounds.upper.z);
+  std::vector<kernel::Camera> cameras;
+  for (unsigned i = 0; i < frames; i++) {
+    float sine, cosine;
+    kernel::sin_cos(2 * SUN_PI * static_cast<float>(i) / static_cast<float>(frames), &sine, &cosine);
+    kernel::Camera camera = loaded.camera;
+    const auto turn = [&](float *v, float about_x, float about_z) {
+      const float a = v[0] - about_x, b = v[2] - about_z;
+      v[0] = about_x + (cosine * a + sine * b);
+      v[2] = about_z + (cosine * b - sine * a);
+    };
+    turn(camera.position, x, z);
+    for (float *v : {camera.right, camera.up, camera.forward}) turn(v, 0, 0);
+    cameras.push_back(camera);
+  }
+  return cameras;
+}
+
+void whitted(Options &o, Notices &notices) {
+  if (!o.json.empty()) check_writable(o.json);
+  RenderOptions &r = o.render;
+  r.integrator = "whitted";
+  if (r.scene.empty()) r.scene = "scenes/whitted/whitted.gltf";
+  if (r.environment.empty()) r.environment = "0.35,0.55,0.9";
+  if (r.ambient.empty()) r.ambient = "0.15,0.15,0.15";
+  const RenderSettings settings = render_settings(r);
+  Session session = open_session(r, settings, notices);
+  compile_session(session, r, settings);
+  fmt::print("{}\n{}\n{}x{}, lanes {}, layout {}\n", session.device.info().description(), session.loaded.line, settings.width, settings.height, session.variant.lanes,
+             layout_name(session.variant.layout));
+  const std::vector<kernel::Camera> cameras = fly_around(session.loaded, o.frames);
+  for (const kernel::Camera &camera : cameras) session.renderer->show(camera, 1);
+  std::vector<double> rates;
+  for (unsigned i = 0; i < o.repeats; i++) {
+    const double begun = now();
+    for (const kernel::Camera &camera : cameras) session.renderer->show(camera, 1);
+    rates.push_back(static_cast<double>(cameras.size()) / (now() - begun));
+  }
+  Hasher hasher;
+  for (const kernel::Camera &camera : cameras) {
+    session.renderer->show(camera, 1);
+    hasher.span(std::span<const kernel::uint>(session.renderer->shown()));
+  }
+  std::ranges::sort(rates);
+  const double median = rates[rates.size() / 2];
+  const std::string hash = hasher.digest().hex();
+  fmt::print("\n{} frames around the scene, {} times: {:.1f} frames/s (best {:.1f}); pixels {}\n", cameras.size(), o.repeats, median, rates.back(), hash);
+  finish(o, {{"scene", r.scene}, {"size", {settings.width, settings.height}}, {"frames", cameras.size()}, {"frames_per_s", median}, {"best_frames_per_s", rates.back()},
+             {"pixels_hash", hash}, {"lanes", session.variant.lanes}, {"layout", layout_name(session.variant.layout)}},
+         session.device.info());
+}
+
 }  // namespace
 
 void add_bench(CLI::App &app, CommandContext &context) {
@@ -185,6 +240,11 @@ void add_bench(CLI::App &app, CommandContext &context) {
     command->add_option("--json", options->json, "Write the same as JSON")->type_name("FILE");
     command->add_option("--repeats", options->repeats, "Timed runs, after one that is not [5]")->check(CLI::Range(1, 1000))->type_name("N");
     if (std::string_view(name) == "traversal") command->add_option("--rays", options->rays, "Primary rays a side [1024]")->check(CLI::Range(16, 8192))->type_name("N");
+    if (std::string_view(name) == "whitted") {
+      options->render.size = "1024x1024";
+      options->render.max_depth = 6;
+      command->add_option("--frames", options->frames, "Frames of the flight [60]")->check(CLI::Range(1, 100000))->type_name("N");
+    }
     if (std::string_view(name) == "scene")
       command->add_option("--reference-spp", options->reference_spp, "Samples of the picture that errors are measured against [1024]")->check(CLI::Range(1u, 1u << 20))->type_name("N");
     command->footer(example);
@@ -196,6 +256,8 @@ void add_bench(CLI::App &app, CommandContext &context) {
   add("traversal", "Primary, bounce and shadow rays beside Embree on the same rays and threads; without a scene, in a room of a million triangles", traversal,
       "Examples:\n  sunstone bench traversal\n  sunstone bench traversal scenes/environment/environment.glb --layout wide16 --json traversal.json");
   add("stages", "Each stage of the wavefront alone, on queues of a render in full swing", stages, "Example:\n  sunstone bench stages scenes/cornell/cornell.gltf --size 512x512 --max-depth 8");
+  add("whitted", "A flight around Whitted's scene by --integrator whitted, 1024x1024, a new camera each frame, in bytes as a display takes them; without a scene, "
+      "scenes/whitted/whitted.gltf", whitted, "Example:\n  sunstone bench whitted --json whitted.json");
   add("scene", "Samples a second, and error over time", scene, "Example:\n  sunstone bench scene scenes/cornell/cornell.gltf --size 512x512 --max-depth 8 --spp 64");
 }
 

@@ -82,6 +82,8 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--heuristic", o.heuristic, "bdpt: strategies share a path by the power heuristic, or by the balance heuristic [power]")->type_name("power|balance")->group("Integrator");
   command.add_option("--strategy", o.strategy, "bdpt: paths of S vertices from the light and T from the eye alone")->type_name("S,T")->group("Integrator");
   command.add_flag("--unweighted", o.unweighted, "bdpt: that strategy as if there were no other")->group("Integrator");
+  command.add_option("--ambient", o.ambient, "whitted: light that is about everywhere, for matt surfaces [0,0,0]")->type_name("R,G,B")->group("Integrator");
+  command.add_option("--cutoff", o.cutoff, "whitted: rays that are worth less are not followed [1/512]")->type_name("X")->group("Integrator");
   command.add_option("--camera", o.camera, "The file's camera of this name or number [0]")->type_name("NAME|INDEX")->group("Camera");
   command.add_option("--look-from", o.look_from, "A camera here ...")->type_name("X,Y,Z")->group("Camera");
   command.add_option("--look-at", o.look_at, "... looking there")->type_name("X,Y,Z")->group("Camera");
@@ -200,6 +202,18 @@ static void read_integrator_flags(const RenderOptions &o, RenderSettings &s) {
   }
   if (o.unweighted) check_flag(plan, "--unweighted");
   s.unweighted = o.unweighted;
+  if (!o.ambient.empty()) {
+    check_flag(plan, "--ambient");
+    const std::vector<float> rgb = parse_numbers("--ambient", o.ambient, 3);
+    for (const float x : rgb)
+      if (!(x >= 0 && x <= 1e18f)) throw UsageError("--ambient " + printable(o.ambient), "is from 0 to 1e18");
+    std::ranges::copy(rgb, s.ambient.begin());
+  }
+  if (o.cutoff) {
+    check_flag(plan, "--cutoff");
+    if (!(*o.cutoff >= 0 && *o.cutoff <= 1)) throw UsageError("--cutoff", "is from 0, which follows every ray to the depth limit, to 1");
+    s.cutoff = static_cast<float>(*o.cutoff);
+  }
   if (o.double_count) check_flag(plan, "--double-count");
   s.double_count = o.double_count;
   check_branching(s);

@@ -26,7 +26,8 @@ struct RenderOptions {
   bool unweighted = false;
   std::optional<std::string> sampling, nee, heuristic, strategy;
   std::optional<long long> light_samples, indirect_samples;
-  std::optional<double> absorption;
+  std::optional<double> absorption, cutoff;
+  std::string ambient;
   std::string camera, look_from, look_at, up = "y";
   std::optional<double> fov, aperture, focus;
   std::string environment, background = "scene";

@@ -23,7 +23,8 @@ struct Expected {
   const char *integrator, *film_hash;
 };
 constexpr Expected expected[] = {{"path", "8a59847fca232a7958695e5dcdadb6b4"}, {"pure", "036424246eac7cec0b5f27f98aeb44b4"}, {"hybrid", "284d85983cb5cfe8fd56093010e49436"},
-                                 {"distribution", "952d39ff8537a814c32e00dbdf90c717"}};
+                                 {"distribution", "952d39ff8537a814c32e00dbdf90c717"},
+                                 {"whitted", "6494b1f18656ac1e9649298982accc55"}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -91,6 +92,7 @@ void Verify::scenes(const Device &device) {
       if (name == "hybrid" || name == "distribution") settings.light_samples = 3;
       if (name == "hybrid") settings.absorption = 0.25f;
       if (name == "distribution") settings.indirect_samples = 2;
+      if (name == "whitted") settings.ambient = {0.2f, 0.3f, 0.4f};
       const Variant wanted = scene_variant(variant, flat, settings);
       if (!programs || !(programs->variant == wanted)) programs = std::make_unique<Programs>(device, wanted);
       Renderer renderer(device, *programs, flat, content.flatten_camera(scene.cameras[0], settings.width, settings.height), settings, {});

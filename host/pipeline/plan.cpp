@@ -29,6 +29,9 @@ std::span<const Plan> integrators() {
        "light that matt surfaces send each other; --integrator path follows it"},
       {"bdpt", "bidirectional path tracing: paths from the eye and from the lights, joined in every way", "Lafortune & Willems 1993, Veach & Guibas 1995", true, true, false,
        {gather_paths, emit, intersect, first_hit, deposit, connect, gather_shadow_rays, occlude_all, roulette}, {}, {"--heuristic", "--strategy", "--unweighted"}, "", true},
+      {"whitted", "mirrored and refracted rays, both followed, and point lights: no light between matt surfaces", "Whitted 1980", false, false, false, {whitted}, {},
+       {"--ambient", "--cutoff"},
+       "what emissive surfaces and the environment light (they are seen, directly and in mirrors), and light between matt surfaces; --integrator path follows both"},
   };
   return table;
 }
@@ -78,6 +81,10 @@ void check_settings(const Plan &plan, const RenderSettings &settings) {
   if (settings.strategy_t) check_flag(plan, "--strategy");
   if (settings.unweighted) check_flag(plan, "--unweighted");
   if (plan.bidirectional) check_bidirectional(plan, settings);
+  if (settings.ambient != plain.ambient) check_flag(plan, "--ambient");
+  if (settings.cutoff != plain.cutoff) check_flag(plan, "--cutoff");
+  if (std::ranges::find(plan.walk, Stage::whitted) != plan.walk.end() && settings.max_depth > SUN_WHITTED_DEPTH)
+    throw UsageError("--max-depth " + std::to_string(settings.max_depth), "--integrator " + plan.name + " follows trees of rays, which double at each depth, to " + std::to_string(SUN_WHITTED_DEPTH));
   if (settings.light_samples < 1 || settings.light_samples > SUN_MOST_LIGHT_SAMPLES)
     throw UsageError("--light-samples", "is from 1 to " + std::to_string(SUN_MOST_LIGHT_SAMPLES));
   if (settings.indirect_samples != plain.indirect_samples) check_flag(plan, "--indirect-samples");
@@ -118,6 +125,10 @@ void check_plan(const Plan &plan) {
   const auto demand = [&](bool holds, const char *what) {
     if (!holds) throw Error("integrator " + plan.name, what);
   };
+  if (has(Stage::whitted)) {
+    demand(plan.walk.size() == 1 && !plan.direct, "a fused walk stands alone");
+    return;
+  }
   // What begins paths, what shades them and what traces their shadow rays goes by other names where there are light subpaths.
   const Stage begin = plan.bidirectional ? Stage::emit : Stage::generate, shade = plan.bidirectional ? Stage::connect : Stage::shade;
   const Stage occlude = plan.bidirectional ? Stage::occlude_all : Stage::occlude;

@@ -7,8 +7,8 @@
 
 namespace sunstone {
 
-// What one step of a walk may run, in the order of a plan. `gather_*` make a dense queue for the stage behind them.
-enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch, emit, deposit, connect, occlude_all };
+// What one step of a walk may run, in the order of a plan. `gather_*` make a dense queue for the stage behind them; `whitted` is a whole walk, fused.
+enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch, emit, deposit, connect, occlude_all, whitted };
 
 struct RenderSettings;
 

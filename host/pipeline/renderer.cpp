@@ -63,6 +63,8 @@ struct Renderer::State {
   Buffer<kernel::Frame> device_frame;
   Buffer<std::int64_t> device_film;
   std::vector<kernel::uint> seen;  // counts as they were read last
+  Buffer<kernel::uint> pixels;     // of show
+  Kernel view;
   std::vector<Stage> walk;         // the plan's, without stages that nothing asks for here
 
   State(const Device &d, const Programs &p, const Plan &pl, const RenderSettings &s) : device(d), programs(p), plan(pl), settings(s) {}
@@ -144,6 +146,8 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   frame.strategy_s = settings.strategy_t ? settings.strategy_s : SUN_NONE;
   frame.strategy_t = settings.strategy_t ? settings.strategy_t : SUN_NONE;
   frame.absorption = settings.absorption;
+  frame.cutoff = settings.cutoff;
+  std::ranges::copy(settings.ambient, frame.ambient);
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
 
   for (const Stage stage : s.plan.walk) {
@@ -371,6 +375,28 @@ std::size_t StageProbe::items(Stage stage) const {
   return counts[stage == Stage::generate ? SUN_COUNT_REFILL : SUN_COUNT_LIVE];
 }
 
+void Renderer::show(const kernel::Camera &camera, float scale) {
+  State &s = *state_;
+  if (s.plan.walk != std::vector{Stage::whitted}) throw Error("integrator " + s.plan.name, "has no fused walk to show frames by");
+  if (s.tiles.size() != 1) throw Error("frame", "does not fit the device in one piece");
+  if (s.pixels.size() == 0) {
+    s.pixels = Buffer<kernel::uint>(s.device, s.film.pixels(), "frame for a display");
+    s.view = Kernel(s.programs.whitted(), "whitted_view");
+  }
+  s.place_tile(s.tiles[0]);
+  kernel::Frame frame = s.frame;
+  frame.camera = camera;
+  frame.sample_first = 0;
+  s.device_frame.upload(std::span(&frame, 1));
+  const DeviceScene &scene = s.scene;
+  s.view.run((frame.paths_per_sample + s.programs.variant.lanes - 1) / s.programs.variant.lanes, s.device_frame, scene.nodes, scene.leaves, scene.instance_list, scene.roots,
+             scene.top_root, scene.fragments, scene.vertices, scene.extras, scene.triangles, scene.instances, scene.records, scene.pages[0], scene.pages[1], scene.pages[2],
+             scene.pages[3], scale, s.pixels);
+  s.device.finish();
+}
+
+std::vector<kernel::uint> Renderer::shown() const { return state_->pixels.download(); }
+
 const Film &Renderer::film() const { return state_->film; }
 const RenderCounts &Renderer::counts() const { return state_->counts; }
 std::size_t Renderer::film_bytes() const { return state_->device_film.bytes(); }
@@ -404,6 +430,8 @@ std::map<std::string, std::string> film_settings(const RenderSettings &s, const 
     if (flag == "--heuristic") all[name] = s.balance ? "balance" : "power";
     if (flag == "--strategy") all[name] = s.strategy_t ? fmt::format("{},{}", s.strategy_s, s.strategy_t) : "all";
     if (flag == "--unweighted") all[name] = s.unweighted ? "yes" : "no";
+    if (flag == "--ambient") all[name] = fmt::format("{},{},{}", s.ambient[0], s.ambient[1], s.ambient[2]);
+    if (flag == "--cutoff") all[name] = fmt::format("{}", s.cutoff);
     if (flag == "--double-count") all[name] = s.double_count ? "yes: wrong on purpose, direct light counts twice" : "no";
   }
   return all;

@@ -68,6 +68,11 @@ class Renderer {
   // after the samples that have begun, all pixels alike. Returns what was done: [first, done).
   SampleRange render(SampleRange wanted, const std::function<bool(const RenderProgress &)> &progress);
 
+  // A frame for a display, from this camera, by an integrator that is one fused walk: a ray through the middle of each pixel, radiance times `scale`, the
+  // curve of sRGB. Returns when it is done; the film is left as it is.
+  void show(const kernel::Camera &camera, float scale);
+  std::vector<kernel::uint> shown() const;  // the last one: a word a pixel, red in its lowest byte
+
   const Film &film() const;
   const RenderCounts &counts() const;
   std::size_t pool_bytes() const;

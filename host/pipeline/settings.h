@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is to be rendered (decides the bits) and how (never does).
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -40,6 +41,8 @@ struct RenderSettings {
   bool balance = false;        // bidirectional weights: the balance heuristic; else the power heuristic
   unsigned strategy_s = 0, strategy_t = 0;  // vertices from the light's side and from the eye's: this strategy alone; 0, 0: all
   bool unweighted = false;     // it, as if there were no other
+  std::array<float, 3> ambient{};  // radiance that matt surfaces scatter wherever they are
+  float cutoff = 1.0f / 512;       // rays worth less are not followed
   LayerChoice layers;
 };
 

@@ -76,7 +76,17 @@ Layout device_layout(const DeviceInfo &info) {
 Programs::Programs(const Device &device, const Variant &v, const CompileProgress &progress)
     : variant(v),
       paths(build_stages(device, "paths", stages_on_paths(v), on_paths(v), 0, progress)),
-      rays(build_stages(device, "rays", stages_on_rays(v), tracing(v), 1, progress)) {}
+      rays(build_stages(device, "rays", stages_on_rays(v), tracing(v), 1, progress)),
+      device_(device) {}
+
+const Program &Programs::whitted() const {
+  if (!whitted_) {
+    Switches switches = tracing(variant);
+    switches["LANES"] = static_cast<int>(variant.lanes);
+    whitted_ = build_stages(device_, "whitted", {"whitted"}, switches, 0, {});
+  }
+  return *whitted_;
+}
 
 Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light_samples_, unsigned branch_records, unsigned light_vertices_)
     : slots(slots_),
@@ -102,7 +112,8 @@ Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light
 }
 
 StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool &pool, const Buffer<kernel::Frame> &frame, const Buffer<std::int64_t> &film)
-    : scene_(scene),
+    : programs_(p),
+      scene_(scene),
       pool_(pool),
       frame_(frame),
       film_(film),
@@ -174,6 +185,15 @@ void StageRunner::run(Stage stage) {
       occlude_all_->run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.vertices, scene_.extras,
                         scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.shadow_rays,
                         pool_.shadow_queue, pool_.status, pool_.counts, film_);
+      break;
+    case Stage::whitted:
+      if (!whitted_) {
+        whitted_.emplace(programs_.whitted(), "whitted");
+        whitted_next_.emplace(programs_.whitted(), "whitted_next");
+      }
+      whitted_->run(bundles, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.vertices, scene_.extras,
+                    scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.counts, film_);
+      whitted_next_->run(1, frame_, pool_.counts);
       break;
     case Stage::roulette: roulette_.run(bundles, frame_, pool_.paths, pool_.status, pool_.branches, rays, pool_.counts); break;
     case Stage::branch: branch_->run(bundles, frame_, pool_.paths, pool_.status, pool_.hits, pool_.branches, rays, pool_.counts); break;

@@ -41,6 +41,11 @@ struct Programs {
   Programs(const Device &device, const Variant &variant, const CompileProgress &progress = {});
   Variant variant;
   Program paths, rays;
+  const Program &whitted() const;  // of the fused walk: compiled when it is first asked for
+
+ private:
+  Device device_;
+  mutable std::optional<Program> whitted_;
 };
 
 // Paths and queues of one pool.
@@ -70,6 +75,7 @@ class StageRunner {
 
  private:
   void gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out);
+  const Programs &programs_;
   const DeviceScene &scene_;
   const Pool &pool_;
   const Buffer<kernel::Frame> &frame_;
@@ -79,6 +85,7 @@ class StageRunner {
   std::optional<Kernel> emit_, deposit_, connect_, occlude_all_;
   Kernel generate_, intersect_, first_hit_, shade_, occlude_, roulette_, count_, scan_, scatter_;
   std::optional<Kernel> branch_;  // where vertices branch
+  std::optional<Kernel> whitted_, whitted_next_;
 };
 
 }  // namespace sunstone

@@ -9,8 +9,9 @@ SUN_NAMESPACE_BEGIN
 
 typedef struct PathNumber {
   uint_n sample;
-  uint_n x, y;  // within the tile
-  mask inside;  // else beyond its edge: numbers count whole blocks
+  uint_n x, y;                  // within the tile ...
+  uint_n picture_x, picture_y;  // ... and in the whole picture
+  mask inside;                  // else beyond the tile's edge: numbers count whole blocks
 } PathNumber;
 
 SUN_FN PathNumber path_number(const SUN_GLOBAL Frame *frame, uint_n number) {
@@ -25,6 +26,8 @@ SUN_FN PathNumber path_number(const SUN_GLOBAL Frame *frame, uint_n number) {
   uint_n block_x = block - block_y * (uint_n)(blocks_across);
   path.x = block_x * (uint_n)(4) + (within & (uint_n)(3));
   path.y = block_y * (uint_n)(4) + (within >> (uint_n)(2));
+  path.picture_x = path.x + (uint_n)(frame->tile_x0);
+  path.picture_y = path.y + (uint_n)(frame->tile_y0);
   path.inside = (path.x < (uint_n)(frame->tile_width)) & (path.y < (uint_n)(frame->tile_height));
   return path;
 }

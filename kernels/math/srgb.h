@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Linear light -> bytes of a display, by the curve of sRGB [IEC61966].
+#ifndef SUN_MATH_SRGB_H
+#define SUN_MATH_SRGB_H
+#include "math/real.h"
+
+SUN_NAMESPACE_BEGIN
+
+// Clamped to 0 and 1, NaN to 0. The power of 1/2.4 as a sum of roots, within 0.1 of a byte's step (a minimax fit).
+SUN_FN uint_n srgb_byte(real linear) {
+  real x = linear > 0.0f ? linear : (real)(0.0f);
+  x = x < 1.0f ? x : (real)(1.0f);
+  real root = sqrt(x), fourth = sqrt(root);
+  real curve = 0.833757951f * root + 0.298101389f * fourth - 0.0553161418f * x - 0.0769016298f;
+  real encoded = x > 0.0031308f ? curve : 12.92f * x;
+  return uint_of_int(int_of_real(255.0f * encoded + 0.5f));
+}
+
+SUN_NAMESPACE_END
+#endif
