@@ -110,6 +110,10 @@ TEST(Usage, FlagsOfOneIntegrator) {
   expect_refusal({"render", cornell, "--integrator", "bdpt", "--crop", "0,0,8,8"}, 2, "--crop");
   expect_refusal({"render", cornell, "--integrator", "bdpt", "--max-depth", "100"}, 2, "64");
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--nee", "last"}, 2, "last");
+  expect_refusal({"render", cornell, "--integrator", "path", "--ambient", "1,1,1"}, 2, "--integrator whitted");
+  expect_refusal({"render", cornell, "--integrator", "whitted", "--ambient", "1,1"}, 2, "3 numbers");
+  expect_refusal({"render", cornell, "--integrator", "whitted", "--ambient", "1,-1,1"}, 2, "from 0");
+  expect_refusal({"render", cornell, "--integrator", "whitted", "--cutoff", "2"}, 2, "--cutoff");
   for (const char *chance : {"1", "-0.1", "nan", "0.99999999999"})
     expect_refusal({"render", cornell, "--integrator", "hybrid", "--absorption", chance}, 2, "--absorption");
 }
