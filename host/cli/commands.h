@@ -20,6 +20,7 @@ void add_devices(CLI::App &app, CommandContext &context);
 void add_verify(CLI::App &app, CommandContext &context);
 void add_info(CLI::App &app, CommandContext &context);
 void add_bench(CLI::App &app, CommandContext &context);
+void add_learn(CLI::App &app, CommandContext &context);
 void add_cache(CLI::App &app, CommandContext &context);
 void add_compare(CLI::App &app, CommandContext &context);
 void add_merge(CLI::App &app, CommandContext &context);

@@ -35,6 +35,7 @@ int main(int argc, char **argv) {
   add_compare(app, context);
   add_merge(app, context);
   add_bench(app, context);
+  add_learn(app, context);
   add_cache(app, context);
   add_completion(app, context);
   try {

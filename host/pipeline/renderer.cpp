@@ -320,14 +320,15 @@ struct StageProbe::State {
   std::unique_ptr<StageRunner> runner;
 };
 
-StageProbe::StageProbe(Renderer &renderer) : state_(new State{*renderer.state_, nullptr}) {
+StageProbe::StageProbe(Renderer &renderer, SampleRange samples) : state_(new State{*renderer.state_, nullptr}) {
   Renderer::State &r = state_->render;
   r.place_tile(r.tiles[0]);
   r.device_film.fill_zero();
-  r.frame.sample_first = 0;
+  r.frame.sample_first = static_cast<kernel::uint>(samples.first);
   r.device_frame.upload(std::span(&r.frame, 1));
   r.seen.assign(2 * SUN_COUNT_WORDS, 0);
-  r.seen[SUN_COUNT_PATHS] = static_cast<kernel::uint>(max_paths_of_a_launch);  // the pool never runs dry
+  const std::uint64_t at_most = max_paths_of_a_launch / r.frame.paths_per_sample;
+  r.seen[SUN_COUNT_PATHS] = static_cast<kernel::uint>(std::min(samples.last - samples.first, at_most) * r.frame.paths_per_sample);
   r.pool->counts.upload(r.seen);
   state_->runner = std::make_unique<StageRunner>(r.programs, r.scene, *r.pool, r.device_frame, r.device_film);
 }
@@ -362,6 +363,8 @@ void StageProbe::restore(const StageState &s) {
   pool.shadow_rays.upload(s.shadow_rays);
   state_->runner->set_current(s.current);
 }
+
+std::vector<std::int64_t> StageProbe::film() const { return state_->render.device_film.download(); }
 
 std::size_t StageProbe::items(Stage stage) const {
   const std::vector<kernel::uint> counts = state_->render.pool->counts.download();

@@ -36,10 +36,10 @@ struct StageState {
 
 class Renderer;
 
-// The stages of a renderer one by one, for the bench.
+// The stages of a renderer one by one, for the bench and for pages that show paths step by step.
 class StageProbe {
  public:
-  explicit StageProbe(Renderer &renderer);
+  StageProbe(Renderer &renderer, SampleRange samples);
   ~StageProbe();
   StageProbe(StageProbe &&) noexcept;
   const std::vector<Stage> &walk() const;  // that this render runs
@@ -48,6 +48,7 @@ class StageProbe {
   StageState save() const;
   void restore(const StageState &state);
   std::size_t items(Stage stage) const;    // entries of the queue that the stage works on, as it was run last
+  std::vector<std::int64_t> film() const;  // integers of the first tile as they are now, layer by layer
 
  private:
   struct State;
@@ -56,7 +57,8 @@ class StageProbe {
 
 class Renderer {
  public:
-  StageProbe probe() { return StageProbe(*this); }
+  // Of these samples; left out, there are so many that the pool never runs dry.
+  StageProbe probe(SampleRange samples = {0, std::uint64_t(1) << 32}) { return StageProbe(*this, samples); }
   // Builds pool and film on the device. `programs` have to outlive the renderer.
   Renderer(const Device &device, const Programs &programs, const FlatScene &scene, const kernel::Camera &camera, const RenderSettings &settings, const Tuning &tuning);
   ~Renderer();

@@ -33,8 +33,10 @@ const std::map<std::string, Names> table = {
     {"bench", {"host/device", "host/film", "host/flatten", "host/pipeline", "kernels/math", "kernels/shared"}},
     // bench: Embree's side of `sunstone bench` is behind the content object's door, as Embree is.
     {"host/content", {"bench", "host/film", "host/flatten", "host/image", "host/import", "host/output", "host/scene"}},
+    // learn: renders and shows as the command does, but the command opens scenes for it, so flags stay in host/cli.
+    {"host/learn", {"host/content", "host/film", "host/image", "host/pipeline", "kernels/shared"}},
     {"host/cli",
-     {"bench", "host/content", "host/device", "host/film", "host/flatten", "host/image", "host/import", "host/output", "host/pipeline", "host/scene", "kernels/math",
+     {"bench", "host/content", "host/device", "host/film", "host/flatten", "host/image", "host/import", "host/learn", "host/output", "host/pipeline", "host/scene", "kernels/math",
       "kernels/shared"}},
     {"kernels/shared", {}},
     {"kernels/math", {"kernels/shared"}},
