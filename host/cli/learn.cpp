@@ -147,10 +147,12 @@ void add_learn(CLI::App &app, CommandContext &context) {
   add_figure(*learn, everything, figures(), context);
   learn->footer("Each writes pictures, a table (CSV) and one page of HTML that needs nothing else, into the folder of -o.\n\nExamples:\n  sunstone learn all -o out\n  sunstone learn convergence -o out\n"
                 "  sunstone learn paths scenes/cornell/cornell.gltf --pixel 300,320 -o out");
-  learn->callback([learn] {
-    if (!learn->get_subcommands().empty()) return;
-    const std::vector<std::string> words = learn->remaining();
-    figure(words.empty() ? "" : words[0]);  // throws, with the names
+  // Before a figure is drawn, and with the names of the figures where CLI11 would say no more than that a word was not expected.
+  learn->parse_complete_callback([learn] {
+    const std::vector<std::string> words = learn->remaining(true);
+    const std::vector<CLI::App *> named = learn->get_subcommands();
+    if (named.empty()) figure(words.empty() ? "" : words[0]);
+    if (!words.empty()) throw UsageError("learn " + named[0]->get_name() + " " + printable(words[0]), "was not expected", "sunstone learn " + named[0]->get_name() + " --help tells the flags");
   });
 }
 
