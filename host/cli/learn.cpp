@@ -45,21 +45,17 @@ RenderOptions scene_options(const Options &o, const Shot &shot) {
 Easel::Asked read_paths(Options &o) {
   const std::vector<float> at = parse_numbers("--pixel", o.pixel, 2);
   RenderSettings settings = render_settings(o.render);
+  if (settings.indirect_samples > 1) throw UsageError("--indirect-samples", "makes trees, and single paths are shown", "sunstone learn branching compares trees and paths");
   const int x = static_cast<int>(at[0]), y = static_cast<int>(at[1]);
   if (static_cast<float>(x) != at[0] || static_cast<float>(y) != at[1] || x < 0 || y < 0 || x >= settings.width || y >= settings.height)
     throw UsageError("--pixel " + printable(o.pixel), fmt::format("is not a pixel of the {} picture", o.render.size), "0,0 is the upper left one");
   if (o.sample + o.samples > (std::uint64_t(1) << 32) / settings.light_samples) throw UsageError("--sample " + std::to_string(o.sample), "sample numbers times shadow rays end at 2^32");
-  return {{"", "", settings}, x, y, {o.sample, o.sample + o.samples}};
+  const std::string command = fmt::format("sunstone learn paths {} --integrator {} --size {} --max-depth {} --pixel {} --sample {} --samples {}", printable(o.render.scene, 400), o.render.integrator, o.render.size,
+                                          o.render.max_depth, o.pixel, o.sample, o.samples);
+  return {{"", "", settings}, x, y, {o.sample, o.sample + o.samples}, command};
 }
 
-void draw(Options &o, std::span<const Figure> wanted, bool asked, Notices &notices) {
-  std::optional<Easel::Asked> paths;
-  std::string command;
-  if (asked) {
-    paths = read_paths(o);
-    command = fmt::format("sunstone learn paths {} --integrator {} --size {} --max-depth {} --pixel {} --sample {} --samples {}", printable(o.render.scene, 400), o.render.integrator, o.render.size, o.render.max_depth, o.pixel,
-                          o.sample, o.samples);
-  }
+void draw(Options &o, std::span<const Figure> wanted, const std::optional<Easel::Asked> &asked, Notices &notices) {
   make_folder(o.folder);
   catch_interrupts();
   Progress progress(o.render.quiet);
@@ -79,7 +75,7 @@ void draw(Options &o, std::span<const Figure> wanted, bool asked, Notices &notic
     if (fraction < 1) progress.bar(fraction, text);
     return !interrupted();
   });
-  Easel easel{studio, o.folder, o.quick, paths, command};
+  Easel easel{studio, o.folder, o.quick, asked};
   const double begun = Progress::seconds();
   draw_all(easel, wanted, [&](const Drawn &d) { progress.line(fmt::format("{}: {}", d.figure->name, d.finding)); });
   progress.end_bar();
@@ -100,10 +96,16 @@ void add_figure(CLI::App &learn, const Figure &f, std::span<const Figure> draws,
   command->add_option("--device", options->render.device, "Number, part of the name, cpu or gpu [as render chooses]")->type_name("SELECTOR");
   command->add_option("--threads", options->render.threads, "Use so many units of a CPU")->type_name("N");
   command->add_flag("-q,--quiet", options->render.quiet, "Only warnings and errors");
+  if (std::string_view(f.name) == "branching") {
+    command->add_option("scene", options->render.scene, "A scene of yours: .gltf, .glb or .obj [the Cornell box]")->type_name("SCENE");
+    command->add_option("--env", options->render.environment, "Its light from all around: a picture (.hdr, .exr) or a colour")->type_name("FILE|R,G,B");
+  }
   command->footer(fmt::format("Takes about {:.0f} s on two idle cores.\n\nExample:\n  sunstone learn {} -o out", f.seconds, f.name));
   command->callback([options, draws, &context] {
     context.quiet = options->render.quiet;
-    draw(*options, draws, false, context.notices);
+    std::optional<Easel::Asked> asked;
+    if (!options->render.scene.empty()) asked.emplace();
+    draw(*options, draws, asked, context.notices);
   });
 }
 
@@ -125,7 +127,7 @@ void add_paths(CLI::App &learn, const Figure &f, CommandContext &context) {
                   "  sunstone learn paths model.glb --integrator pure --pixel 10,20 --sample 41 --samples 1");
   command->callback([options, &f, &context] {
     context.quiet = options->render.quiet;
-    draw(*options, std::span(&f, 1), true, context.notices);
+    draw(*options, std::span(&f, 1), read_paths(*options), context.notices);
   });
 }
 

@@ -18,14 +18,14 @@ std::string draw_bounces(Easel &easel) {
   easel.studio.render(*renderer, {0, samples});
   const Film &film = renderer->film();
 
-  Table table{{"bounces at most", "mean luminance", "share of five bounces", "this bounce alone"}, {}};
+  Table table{{"bounces at most", "mean luminance", "% of five bounces", "this bounce alone"}, {}};
   std::vector<Picture> row;
   std::vector<double> means;
   const double whole = mean_luminance(beauty_of(film));
   for (unsigned depth = 0; depth <= deepest; depth++) {
     const double up_to = mean_luminance(beauty_of(bounces_of(film, 0, depth))), alone = mean_luminance(beauty_of(bounces_of(film, depth, depth)));
     means.push_back(alone);
-    table.rows.push_back({std::to_string(depth), show_number(up_to), fmt::format("{:.2f} %", 100 * up_to / whole), show_number(alone)});
+    table.rows.push_back({std::to_string(depth), fmt::format("{:.5g}", up_to), fmt::format("{:.2f}", 100 * up_to / whole), fmt::format("{:.5g}", alone)});
     if (depth != 0 && depth != 1 && depth != deepest) continue;
     const std::filesystem::path file = easel.file(fmt::format("bounces-{}.png", depth));
     write_png(file, bounces_of(film, 0, depth));

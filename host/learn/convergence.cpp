@@ -23,10 +23,12 @@ struct Curve {
 };
 
 // Error against `reference` after each of `counts`. Films add, so sample n is rendered once and stays: the curve costs what its last point costs.
-Curve measure(Easel &easel, Renderer &renderer, const std::set<std::uint64_t> &counts, const Image &reference, const std::function<void(std::uint64_t, const Film &)> &show) {
+Curve measure(Easel &easel, Renderer &renderer, const std::set<std::uint64_t> &counts, const Image &reference, double share, const std::string &name,
+              const std::function<void(std::uint64_t, const Film &)> &show) {
   Curve curve;
   std::vector<double> fitted_n, fitted_rmse;
   for (const std::uint64_t n : counts) {
+    easel.studio.piece(share * static_cast<double>(n - curve.last) / static_cast<double>(*counts.rbegin()), name);
     easel.studio.render(renderer, {curve.last, n});
     const Comparison error = load_content().compare_images(beauty_of(renderer.film()), reference);
     curve.samples.push_back(static_cast<double>(n));
@@ -100,8 +102,7 @@ std::string draw_convergence(Easel &easel) {
   for (const bool independent : {true, false}) {
     shot.settings.independent = independent;
     const auto renderer = easel.studio.renderer(shot);
-    easel.studio.piece(0.4, independent ? "independent samples" : "Sobol' samples");
-    curves.push_back(measure(easel, *renderer, counts, reference, [&](std::uint64_t n, const Film &film) {
+    curves.push_back(measure(easel, *renderer, counts, reference, 0.4, independent ? "independent samples" : "Sobol' samples", [&](std::uint64_t n, const Film &film) {
       if (!independent || !shown.contains(n)) return;
       const std::filesystem::path file = easel.file(fmt::format("convergence-{}.png", n));
       write_png(file, film);

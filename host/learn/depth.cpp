@@ -25,13 +25,12 @@ Depths measure(Easel &easel, const Shot &shot, std::uint64_t samples) {
   const RenderCounts &counts = renderer->counts();
   // Of what surfaces send back: the lamp itself, a few bright pixels, would outweigh the room.
   const double whole = mean_luminance(beauty_of(bounces_of(d.film, 1, shot.settings.max_depth)));
-  double alive = static_cast<double>(counts.paths);
+  const std::vector<std::uint64_t> rays = rays_by_depth(counts);
   for (unsigned depth = 0; depth <= shot.settings.max_depth; depth++) {
     d.depth.push_back(depth);
     d.luminance.push_back(mean_luminance(beauty_of(bounces_of(d.film, depth, depth))));
     d.share.push_back(d.luminance.back() / whole);
-    d.rays.push_back(alive / static_cast<double>(counts.paths));
-    alive -= static_cast<double>(counts.ended_by_depth[depth]);
+    d.rays.push_back(static_cast<double>(rays[depth]) / static_cast<double>(counts.paths));
   }
   return d;
 }
@@ -61,12 +60,12 @@ std::string draw_depth(Easel &easel) {
     if (k <= 8) largest = std::max(largest, std::fabs(mean / exact.back() - 1));
   }
 
-  Table table{{"depth", "mean luminance", "share of depths from 1", "up to here", "rays a path", "light a ray"}, {}};
+  Table table{{"depth", "mean luminance", "% of depths from 1", "% up to here", "rays a path", "light a ray"}, {}};
   double sum = 0;
   std::vector<double> fall_depth, fall_log;
   for (unsigned k = 0; k <= deepest; k++) {
     if (k > 0) sum += cornell.share[k];
-    table.rows.push_back({std::to_string(k), fmt::format("{:.5g}", cornell.luminance[k]), k ? fmt::format("{:.3f} %", 100 * cornell.share[k]) : "–", k ? fmt::format("{:.3f} %", 100 * sum) : "–", fmt::format("{:.4f}", cornell.rays[k]),
+    table.rows.push_back({std::to_string(k), fmt::format("{:.5g}", cornell.luminance[k]), k ? fmt::format("{:.3f}", 100 * cornell.share[k]) : "", k ? fmt::format("{:.3f}", 100 * sum) : "", fmt::format("{:.4f}", cornell.rays[k]),
                           fmt::format("{:.4g}", cornell.rays[k] > 0 ? cornell.luminance[k] / cornell.rays[k] : 0.0)});
     if (k >= 2 && cornell.luminance[k] > 0) {
       fall_depth.push_back(k);

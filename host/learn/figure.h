@@ -17,11 +17,11 @@ struct Easel {
   bool quick = false;  // tiny, for a first look and for tests: the same steps, worth nothing as a measurement
   struct Asked {
     Shot shot;
-    int x, y;
+    int x = 0, y = 0;      // `paths`: which pixel, and which samples of it
     SampleRange samples;
+    std::string command;   // as it was typed, for the page
   };
-  std::optional<Asked> asked = {};  // `paths`: of the command line; without it a pixel of the Cornell box
-  std::string command = {};         // as it was typed, for the page
+  std::optional<Asked> asked = {};  // of the command line, where a figure takes a scene; without it the Cornell box
 
   // Full size or tiny.
   template <class T> T size(T full, T tiny) const { return quick ? tiny : full; }
@@ -50,6 +50,7 @@ std::string draw_light_sampling(Easel &easel);
 std::string draw_depth(Easel &easel);
 std::string draw_pseudo_code(Easel &easel);
 std::string draw_l1_l2(Easel &easel);
+std::string draw_branching(Easel &easel);
 std::string draw_paths(Easel &easel);
 
 // Draws each of `wanted`, with an index page beside them where there are several. Returns their findings.

@@ -18,6 +18,7 @@ std::span<const Figure> figures() {
       {"convergence", "From 1 to 100 000 samples", "an area light at growing sample counts, the error curve and its slope, independent and Sobol'", 420, draw_convergence},
       {"light-sampling", "With and without light sampling", "pure, hybrid and path at equal time, with error maps", 60, draw_light_sampling},
       {"depth", "What each depth contributes", "radiance and rays by depth, and the closed furnace whose series is known", 40, draw_depth},
+      {"branching", "The argument against branching", "trees of rays and paths at equal numbers of rays: rays and light by depth, variance", 90, draw_branching},
       {"pseudo-code", "The pseudo-code against pure path tracing", "each deviation alone: means, variances, rays; and the classic mistake", 120, draw_pseudo_code},
       {"paths", "The paths of one pixel", "every vertex drawn over the picture and in a table, with pdf, throughput and contribution", 20, draw_paths},
   };

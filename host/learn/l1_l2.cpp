@@ -78,10 +78,10 @@ std::string draw_l1_l2(Easel &easel) {
     }
   measured /= count, exact /= count;
 
-  Table table{{"scene", "lit directly", "by way of l1 to l2", "pixels black without it"}, {}};
+  Table table{{"scene", "% lit directly", "% by way of l1 to l2", "% of pixels black without it"}, {}};
   const double under_share = missed_share(under, deepest), cornell_share = missed_share(cornell, deepest);
-  table.rows.push_back({"lamp under a mirror", fmt::format("{:.2f} %", 100 * (1 - under_share)), fmt::format("{:.2f} %", 100 * under_share), fmt::format("{:.1f} %", 100 * black_share(under, deepest))});
-  table.rows.push_back({"Cornell box", fmt::format("{:.2f} %", 100 * (1 - cornell_share)), fmt::format("{:.2f} %", 100 * cornell_share), fmt::format("{:.1f} %", 100 * black_share(cornell, deepest))});
+  table.rows.push_back({"lamp under a mirror", fmt::format("{:.2f}", 100 * (1 - under_share)), fmt::format("{:.2f}", 100 * under_share), fmt::format("{:.1f}", 100 * black_share(under, deepest))});
+  table.rows.push_back({"Cornell box", fmt::format("{:.2f}", 100 * (1 - cornell_share)), fmt::format("{:.2f}", 100 * cornell_share), fmt::format("{:.1f}", 100 * black_share(cornell, deepest))});
   write_csv(easel.file("l1-l2.csv"), table);
   const std::string finding = fmt::format("Of the light that surfaces send to the camera, {:.1f} % came by way of another surface where a lamp shines up at a mirror, and {:.1f} % in the Cornell box; Whitted's rays find none of it. "
                                           "On the floor the reflected light is {:.4f}, where the closed form says {:.4f} ({:+.2f} %).", 100 * under_share, 100 * cornell_share, measured, exact, 100 * (measured / exact - 1));

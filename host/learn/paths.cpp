@@ -219,7 +219,7 @@ std::string draw_paths(Easel &easel) {
     page.drawing(overlay.drawing("<use href='#picture'/>", overlay.path(p, i, reach, true), x, y), "Dashed: shadow rays, yellow where light came, red where something stood between.");
     page.table(table_of(p));
   }
-  if (!easel.command.empty()) page.command(easel.command);
+  page.command(easel.asked ? easel.asked->command : fmt::format("sunstone learn paths scenes/cornell/cornell.gltf --size {}x{} --filter box --max-depth 8 --pixel {},{}", width, height, x, y));
   page.write(easel.file("paths.html"));
   return finding;
 }

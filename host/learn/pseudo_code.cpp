@@ -66,7 +66,7 @@ Measured measure(Easel &easel, const Shot &shot, unsigned films, std::uint64_t s
 std::string draw_pseudo_code(Easel &easel) {
   const unsigned films = easel.size(16u, 2u);
   const std::uint64_t samples = easel.size<std::uint64_t>(64, 4);
-  Table table{{"scene", "variant", "flags", "mean luminance", "standard error", "against the first", "in standard errors", "variance of a sample", "rays a path", "variance x rays"}, {}};
+  Table table{{"scene", "variant", "flags", "mean luminance", "standard error", "% against the first", "in standard errors", "variance of a sample", "rays a path", "variance x rays"}, {}};
   std::vector<Measured> found[2];
   std::vector<Picture> pictures[2];
   const auto run = [&](int group, std::span<const Deviation> variants, const char *scene, int width, int height, unsigned depth) {
@@ -80,7 +80,7 @@ std::string draw_pseudo_code(Easel &easel) {
       const Measured &m = found[group].back(), &first = found[group].front();
       const double apart = m.statistics.mean - first.statistics.mean, sigma = std::hypot(m.statistics.mean_error, first.statistics.mean_error);
       table.rows.push_back({std::filesystem::path(scene).stem().string(), v.name, v.flags, fmt::format("{:.5f}", m.statistics.mean), fmt::format("{:.2g}", m.statistics.mean_error),
-                            fmt::format("{:+.2f} %", 100 * apart / first.statistics.mean), &m == &first ? "–" : fmt::format("{:+.1f}", apart / sigma), fmt::format("{:.4g}", m.statistics.variance), fmt::format("{:.2f}", m.rays),
+                            fmt::format("{:+.2f}", 100 * apart / first.statistics.mean), &m == &first ? "" : fmt::format("{:+.1f}", apart / sigma), fmt::format("{:.4g}", m.statistics.variance), fmt::format("{:.2f}", m.rays),
                             fmt::format("{:.4g}", m.statistics.variance * m.rays)});
       pictures[group].push_back({png, fmt::format("`{}`: {}. Variance {}", v.flags, v.says, show_number(m.statistics.variance, 3))});
     }

@@ -28,6 +28,7 @@ std::unique_ptr<Renderer> Studio::renderer(const Shot &shot, unsigned pool) {
   variant.passable = scene.flat.has_passable;
   variant.specular = scene.flat.has_specular;
   variant.textures = scene.flat.has_textures;
+  variant.branching = shot.settings.indirect_samples > 1;
   const auto same = [&](const std::unique_ptr<Programs> &programs) { return programs->variant == variant; };
   auto found = std::ranges::find_if(programs_, same);
   if (found == programs_.end()) {
