@@ -14,11 +14,11 @@ namespace {
 
 constexpr unsigned deepest = 3;  // of the web page that the lecture quotes: 16 rays at a hit, three bounces
 
-struct Tree {
+struct RayTree {
   unsigned children, shadow_rays;
 };
 // The first is what the others are held against: a path.
-constexpr Tree trees[] = {{1, 1}, {2, 1}, {4, 1}, {16, 1}, {16, 16}};
+constexpr RayTree trees[] = {{1, 1}, {2, 1}, {4, 1}, {16, 1}, {16, 16}};
 
 struct Spent {
   std::uint64_t samples = 0;        // of each film
@@ -28,10 +28,10 @@ struct Spent {
   Film film;                        // all films together
 };
 
-std::string name_of(const Tree &tree) { return tree.children == 1 ? "a path" : fmt::format("{} at each hit{}", tree.children, tree.shadow_rays > 1 ? fmt::format(", {} shadow rays", tree.shadow_rays) : ""); }
-std::string flags_of(const Tree &tree) { return fmt::format("--indirect-samples {} --light-samples {}", tree.children, tree.shadow_rays); }
+std::string name_of(const RayTree &tree) { return tree.children == 1 ? "a path" : fmt::format("{} at each hit{}", tree.children, tree.shadow_rays > 1 ? fmt::format(", {} shadow rays", tree.shadow_rays) : ""); }
+std::string flags_of(const RayTree &tree) { return fmt::format("--indirect-samples {} --light-samples {}", tree.children, tree.shadow_rays); }
 
-Shot shot_of(const Easel &easel, const Tree &tree, int side) {
+Shot shot_of(const Easel &easel, const RayTree &tree, int side) {
   Shot shot{"cornell/cornell.gltf", "", figure_settings(side, side, "hybrid", deepest)};
   if (easel.asked) shot.scene = "", shot.environment = "";
   shot.settings.independent = true;
@@ -85,7 +85,7 @@ std::string draw_branching(Easel &easel) {
   std::vector<Spent> spent;
   // The largest tree once a pixel and film: what one sample of it takes, all others may spend.
   const double rays = easel.size(9000.0, 600.0);
-  for (const Tree &tree : trees) spent.push_back(spend(easel, shot_of(easel, tree, side), films, rays, 1.0 / static_cast<double>(count), name_of(tree)));
+  for (const RayTree &tree : trees) spent.push_back(spend(easel, shot_of(easel, tree, side), films, rays, 1.0 / static_cast<double>(count), name_of(tree)));
 
   const Spent &path = spent[0], &web = spent[3];
   const double whole = mean_luminance(beauty_of(path.film)), reflected = mean_luminance(beauty_of(bounces_of(path.film, 1, deepest)));
