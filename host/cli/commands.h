@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/notice.h"
+#include "import/import.h"
 #include "output/output.h"
 
 namespace sunstone {
@@ -28,6 +29,10 @@ void add_completion(CLI::App &app, CommandContext &context);
 
 // --exposure and --tone, for every command that writes views. `view` must outlive the parse.
 void add_view_options(CLI::App &command, ViewOptions &view);
+
+// --time-at and --animation, for every command that opens scenes; then what one means without the other. `options` must outlive the parse.
+void add_pose_options(CLI::App &command, ImportOptions &options);
+void check_pose_options(const ImportOptions &options);
 
 // A script for bash, zsh or fish that completes all commands and options of `app`, however many there are when it is called.
 std::string completion_script(const CLI::App &app, const std::string &shell);

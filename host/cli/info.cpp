@@ -18,14 +18,16 @@ namespace {
 
 struct Options {
   std::string scene;
-  bool json = false, allow_outside = false;
+  ImportOptions import;
+  bool json = false;
 };
 
 std::string mebibytes(std::size_t bytes) { return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / 1048576.0); }
 
 void tell(const Options &o, Notices &notices) {
+  check_pose_options(o.import);
   const Content &content = load_content();
-  const Scene scene = content.import_scene(o.scene, {o.allow_outside}, notices);
+  const Scene scene = content.import_scene(o.scene, o.import, notices);
   std::size_t unique = 0, flattened = 0;
   std::vector<std::size_t> of_mesh;
   for (const Mesh &mesh : scene.meshes) {
@@ -85,8 +87,9 @@ void add_info(CLI::App &app, CommandContext &context) {
   auto options = std::make_shared<Options>();
   CLI::App *command = app.add_subcommand("info", "Tell what is in a scene: counts, bounds, memory, extensions, warnings");
   command->add_option("scene", options->scene, "The scene: .gltf, .glb or .obj")->required()->type_name("SCENE");
+  add_pose_options(*command, options->import);
   command->add_flag("--json", options->json, "Print JSON");
-  command->add_flag("--allow-outside", options->allow_outside, "Let the scene name files outside its own folder");
+  command->add_flag("--allow-outside", options->import.allow_outside, "Let the scene name files outside its own folder");
   command->footer("Example:\n  sunstone info scenes/cornell/cornell.gltf");
   command->callback([options, &context] { tell(*options, context.notices); });
 }

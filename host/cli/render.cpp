@@ -27,11 +27,13 @@ bool is_film(const std::string &name) { return name.ends_with(".film"); }
 
 class Render {
  public:
-  Render(RenderOptions &options, Notices &notices) : o_(options), notices_(notices), progress_(options.quiet) {}
+  Render(RenderOptions &options, Notices &notices) : o_(options), given_(options), notices_(notices), progress_(options.quiet) {}
   void run();
 
  private:
+  void take_frame(std::uint64_t number);
   void check_outputs();
+  void open();
   void resume();
   void render_range(SampleRange range);
   void write_outputs();
@@ -39,8 +41,10 @@ class Render {
   Film whole_film() const;
   void compile();
   bool go_on(const RenderProgress &p);
+  bool render_picture();
 
-  RenderOptions &o_;
+  RenderOptions &o_;            // of the picture, or of the frame at hand
+  RenderOptions given_;
   Notices &notices_;
   Progress progress_;
   RenderSettings settings_;
@@ -53,10 +57,19 @@ class Render {
   SampleRange range_{};          // of the call that is running
   SampleRange all_{};
   bool paused_ = false;          // the call ended to write, not to end the render
+  std::optional<FrameRange> frames_;
+  std::uint64_t frame_ = 0;
 };
 
+// Time and names of a frame.
+void Render::take_frame(std::uint64_t number) {
+  frame_ = number;
+  o_.import.time = settings_.time = frame_time(given_, number);
+  for (std::size_t i = 0; i < o_.outputs.size(); i++) o_.outputs[i] = frame_name(given_.outputs[i], number);
+  if (!o_.stats.empty()) o_.stats = frame_name(given_.stats, number);
+}
+
 void Render::check_outputs() {
-  if (o_.outputs.empty() && o_.checkpoint.empty()) o_.outputs.push_back(std::filesystem::path(o_.scene).stem().string() + ".png");
   for (const std::string &name : o_.outputs) {
     if (!is_film(name)) check_picture_name(name);
     check_writable(name);
@@ -164,11 +177,7 @@ void Render::compile() {
   progress_.end_bar();
 }
 
-void Render::run() {
-  settings_ = render_settings(o_);
-  all_ = parse_samples(o_);
-  check_outputs();
-  catch_interrupts();
+void Render::open() {
   session_ = open_session(o_, settings_, notices_);
   progress_.line(session_.device.info().description());
   progress_.line(session_.loaded.line);
@@ -178,9 +187,12 @@ void Render::run() {
   reproducible_ = self_test.reproducible ? "yes" : "no";
   if (!self_test.reproducible)
     notices_.warning(session_.device.info().name, "rounds differently in " + self_test.differs + ": its picture may differ from other devices' in the last bits");
-  if (!o_.resume.empty()) resume();
+}
+
+// From the first sample to the written files; false where a frame was interrupted, of which nothing is written.
+bool Render::render_picture() {
   samples_wanted_ = std::max<std::uint64_t>(1, all_.last - all_.first);
-  startup_ = Progress::seconds();
+  error_ = -1;
   begun_ = last_update_ = last_checkpoint_ = now();
 
   if (o_.error) {
@@ -202,6 +214,10 @@ void Render::run() {
   render_seconds_ = now() - begun_;
   progress_.bar(1, fmt::format("{}", show_seconds(render_seconds_)));
   progress_.end_bar();
+  if (frames_ && interrupted()) {
+    progress_.line(fmt::format("interrupted: frame {} is not written; --frames {}:{} goes on", frame_, frame_, frames_->last));
+    return false;
+  }
 
   const Film film = whole_film();
   if (film.samples.empty()) throw Error("", "interrupted before the first sample was done; nothing is written");
@@ -214,11 +230,35 @@ void Render::run() {
   if (settings_.double_count) notices_.warning("--double-count", "direct light is counted twice, on purpose: the picture is wrong, and its metadata says so");
   if (film.clamped) notices_.note("", fmt::format("{} contributions were beyond the film's range and clamped", film.clamped));
   if (film.nan) notices_.warning("", fmt::format("{} contributions were not finite and dropped", film.nan));
-  progress_.line(fmt::format("{}{} samples per pixel in {}, {}samples/s, film hash {}", interrupted() ? "interrupted: " : "", film.sample_count(), show_seconds(render_seconds_),
+  const std::string frame = frames_ ? fmt::format("frame {}, at {:.6g} s: ", frame_, *settings_.time) : "";
+  progress_.line(fmt::format("{}{}{} samples per pixel in {}, {}samples/s, film hash {}", frame, interrupted() ? "interrupted: " : "", film.sample_count(), show_seconds(render_seconds_),
                              show_count(static_cast<double>(session_.renderer->counts().paths) / std::max(render_seconds_, 1e-9)), film_hash(film).hex()));
   if (error_ = estimated_error(film); std::isfinite(error_)) progress_.line(fmt::format("noise (relMSE, estimated from two halves): {:.3e}", error_));
   for (const std::string &name : o_.outputs) progress_.line(printable(name, 400));
   if (!o_.checkpoint.empty()) progress_.line(printable(o_.checkpoint, 400));
+  return true;
+}
+
+void Render::run() {
+  frames_ = parse_frames(o_);
+  settings_ = render_settings(o_);
+  all_ = parse_samples(o_);
+  if (o_.outputs.empty() && o_.checkpoint.empty()) o_.outputs.push_back(std::filesystem::path(o_.scene).stem().string() + ".png");
+  given_ = o_;
+  if (frames_) take_frame(frames_->first);
+  check_outputs();
+  catch_interrupts();
+  open();
+  if (!o_.resume.empty()) resume();
+  startup_ = Progress::seconds();
+  if (!render_picture() || !frames_) return;
+  for (std::uint64_t number = frames_->first + 1; number < frames_->last; number++) {
+    const double begun = now();
+    take_frame(number);
+    next_frame(session_, o_, settings_, notices_);
+    startup_ = now() - begun;
+    if (!render_picture()) return;
+  }
 }
 
 }  // namespace
@@ -234,7 +274,8 @@ void add_render(CLI::App &app, CommandContext &context) {
                   "  sunstone render scenes/cornell/cornell.gltf --size 512x512 -o cornell.png\n"
                   "  sunstone render model.glb --env sky.hdr --spp 256 -o model.exr -o model.png --aov all\n"
                   "  sunstone render big.glb --time 3600 --checkpoint big.film -o big.exr\n"
-                  "  sunstone render model.glb --samples 0:512 -o first-half.film");
+                  "  sunstone render model.glb --samples 0:512 -o first-half.film\n"
+                  "  sunstone render walk.glb --frames 0:48 -o walk.png");
   command->callback([options, &context] {
     options->view.transparent_background = options->background == "transparent";
     context.quiet = options->quiet;

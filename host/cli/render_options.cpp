@@ -99,6 +99,9 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--aov", o.layers, "More layers for .exr and .film: a list, or all")->type_name("LIST")->group("Output");
   command.add_option("--update", o.update, "Rewrite the pictures this often while rendering")->check(CLI::Range(0.1, 1e9))->type_name("SECONDS")->group("Output");
   command.add_option("--samples", o.samples, "Render these samples alone, half-open; merge adds the films")->type_name("A:B")->group("Output");
+  add_pose_options(command, o.import);
+  command.add_option("--frames", o.frames, "Render these frames of the animation, half-open; -o walk.png writes walk.0000.png ...")->type_name("A:B")->group("Motion");
+  command.add_option("--fps", o.fps, "Frames of a second [24]")->type_name("N")->group("Motion");
   command.add_option("--checkpoint", o.checkpoint, "Keep the film here every 30 seconds and at the end")->type_name("FILE.film")->group("Output");
   command.add_option("--resume", o.resume, "Go on with this film")->type_name("FILE.film")->group("Output");
   command.add_option("--stats", o.stats, "Write what was measured as JSON")->type_name("FILE.json")->group("Output");
@@ -108,7 +111,7 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--work-group", o.work_group, "Work-items of a group")->check(CLI::Range(1, 4096))->type_name("N")->group("Device (never changes a bit)");
   command.add_option("--layout", o.layout, "Tree: binary, wide8 or wide16")->type_name("NAME")->group("Device (never changes a bit)");
   command.add_option("--lanes", o.lanes, "Paths of a shading work-item: 1, 8 or 16")->check(CLI::IsMember({1, 8, 16}))->type_name("N")->group("Device (never changes a bit)");
-  command.add_flag("--allow-outside", o.allow_outside, "Let the scene name files outside its own folder");
+  command.add_flag("--allow-outside", o.import.allow_outside, "Let the scene name files outside its own folder");
   command.add_flag("-q,--quiet", o.quiet, "Only warnings and errors");
   command.add_flag("-v,--verbose", o.verbose, "More about what is done");
 }
@@ -148,6 +151,34 @@ SampleRange parse_samples(const RenderOptions &o) {
   const SampleRange range{parse<std::uint64_t>("--samples", parts[0], "a sample number"), parse<std::uint64_t>("--samples", parts[1], "a sample number")};
   if (range.first >= range.last || range.last > (std::uint64_t(1) << 32)) throw UsageError("--samples " + printable(o.samples), "holds no sample, or ends beyond 2^32");
   return checked(o, range);
+}
+
+std::optional<FrameRange> parse_frames(const RenderOptions &o) {
+  if (o.frames.empty()) {
+    if (o.fps) throw UsageError("--fps", "says how far apart --frames are, which are not given");
+    check_pose_options(o.import);
+    return {};
+  }
+  const std::string place = "--frames " + printable(o.frames);
+  const auto parts = split(o.frames, ':');
+  if (parts.size() != 2) throw UsageError(place, "is not A:B");
+  const FrameRange range{parse<std::uint64_t>("--frames", parts[0], "a frame's number"), parse<std::uint64_t>("--frames", parts[1], "a frame's number")};
+  if (range.first >= range.last || range.last > 10000000) throw UsageError(place, "holds no frame, or ends beyond 10000000");
+  if (o.fps && !(*o.fps >= 1e-3 && *o.fps <= 1e6)) throw UsageError("--fps", "is not from 0.001 to 1000000");
+  if (!o.checkpoint.empty() || !o.resume.empty())
+    throw UsageError(o.resume.empty() ? "--checkpoint" : "--resume", "keeps the film of one picture, and --frames renders many",
+                     "-o NAME.film keeps the film of each frame, and --frames goes on at any of them");
+  if (o.update) throw UsageError("--update", "rewrites one picture while it gets better; --frames writes each when it is done");
+  return range;
+}
+
+double frame_time(const RenderOptions &o, std::uint64_t number) { return o.import.time.value_or(0) + static_cast<double>(number) / o.fps.value_or(24); }
+
+std::string frame_name(const std::string &name, std::uint64_t number) {
+  const std::filesystem::path path(name);
+  std::string digits = std::to_string(number);
+  if (digits.size() < 4) digits.insert(0, 4 - digits.size(), '0');
+  return (path.parent_path() / (path.stem().string() + "." + digits + path.extension().string())).string();
 }
 
 // What single integrators take, refused elsewhere.
@@ -237,6 +268,7 @@ RenderSettings render_settings(const RenderOptions &o) {
     if (s.x0 < 0 || s.y0 < 0 || s.x1 > s.width || s.y1 > s.height || s.x0 >= s.x1 || s.y0 >= s.y1)
       throw UsageError("--crop " + printable(o.crop), "is not a window of the " + o.size + " picture");
   }
+  s.time = o.import.time;
   s.integrator = o.integrator;
   s.max_depth = o.max_depth;
   read_integrator_flags(o, s);

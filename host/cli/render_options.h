@@ -9,6 +9,7 @@
 
 #include "device/device.h"
 #include "film/film.h"
+#include "import/import.h"
 #include "output/output.h"
 #include "pipeline/settings.h"
 
@@ -36,7 +37,10 @@ struct RenderOptions {
   std::string device, layout;
   unsigned threads = 0, pool = 0, work_group = 0, lanes = 0;
   std::string checkpoint, resume, stats;
-  bool allow_outside = false, quiet = false, verbose = false;
+  ImportOptions import;  // its time: of the picture, or where frames begin
+  std::string frames;
+  std::optional<double> fps;
+  bool quiet = false, verbose = false;
 };
 
 void add_render_options(CLI::App &command, RenderOptions &options);
@@ -46,6 +50,18 @@ RenderSettings render_settings(const RenderOptions &options);
 
 // "X,Y,Z" and the like: `count` finite numbers.
 std::vector<float> parse_numbers(const std::string &flag, const std::string &text, std::size_t count);
+
+// --frames A:B, half-open.
+struct FrameRange {
+  std::uint64_t first, last;
+};
+std::optional<FrameRange> parse_frames(const RenderOptions &options);
+
+// Seconds at which frame `number` is taken: --time-at (0 without it) plus number / --fps.
+double frame_time(const RenderOptions &options, std::uint64_t number);
+
+// "dir/walk.png" -> "dir/walk.0007.png".
+std::string frame_name(const std::string &name, std::uint64_t number);
 
 // --samples A:B, or 0:spp.
 SampleRange parse_samples(const RenderOptions &options);

@@ -15,7 +15,7 @@ namespace sunstone {
 
 namespace {
 
-Camera choose_camera(const Content &content, const RenderOptions &o, const Scene &scene, float aspect) {
+Camera choose_camera(const Content &content, const RenderOptions &o, const Scene &scene, const Scene &at_rest, float aspect) {
   if (o.look_from.empty() != o.look_at.empty()) throw UsageError(o.look_from.empty() ? "--look-at" : "--look-from", "--look-from and --look-at go together");
   const float to_radians = SUN_PI / 180.0f;
   Camera camera;
@@ -44,7 +44,7 @@ Camera choose_camera(const Content &content, const RenderOptions &o, const Scene
     camera.focus_distance = static_cast<float>(*o.focus);
   } else if (camera.lens_radius > 0) {
     // On the centre of the scene, along the axis.
-    const Bounds bounds = content.scene_bounds(scene);
+    const Bounds bounds = content.scene_bounds(at_rest);
     const glm::vec3 forward = -camera.transform[2], to = bounds.empty() ? forward : (bounds.lower + bounds.upper) * 0.5f - camera.transform[3];
     const float along = to.x * forward.x + to.y * forward.y + to.z * forward.z;
     camera.focus_distance = along > 1e-4f ? along : 1.0f;
@@ -52,19 +52,40 @@ Camera choose_camera(const Content &content, const RenderOptions &o, const Scene
   return camera;
 }
 
+// What moves is seen from where the scene at rest is, and sharp where that is: otherwise a made-up view would move with it. Null where nothing is made up.
+std::shared_ptr<const Scene> scene_at_rest(const Content &content, const RenderOptions &o, const Scene &scene) {
+  const bool view = scene.cameras.empty() && o.look_from.empty() && o.camera.empty(), focus = o.aperture && !o.focus;
+  if (!o.import.time || (!view && !focus)) return nullptr;
+  Notices said;  // all of it is said of the scene itself
+  ImportOptions at_rest = o.import;
+  at_rest.time.reset();
+  Scene still = content.import_scene(o.scene, at_rest, said);
+  still.images.clear();
+  return std::make_shared<const Scene>(std::move(still));
+}
+
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
-LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, Layout layout, const DeviceInfo &info, Notices &notices) {
+LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, Layout layout, const DeviceInfo &info, Notices &notices,
+                       std::shared_ptr<const Scene> at_rest) {
   LoadedScene loaded;
   const Content &content = load_content();
   const double begun = now();
-  loaded.scene = content.import_scene(o.scene, {o.allow_outside}, notices);
+  loaded.scene = content.import_scene(o.scene, o.import, notices);
   const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
   if (!o.environment.empty()) loaded.scene.environment = content.import_environment(o.environment, notices);
   loaded.scene.environment.rotation = static_cast<float>(o.environment_rotation / 360.0);
   loaded.scene.environment.strength = static_cast<float>(o.environment_strength);
+  loaded.at_rest = at_rest ? std::move(at_rest) : scene_at_rest(content, o, loaded.scene);
+  if (loaded.at_rest && loaded.scene.cameras.empty() && o.look_from.empty()) {
+    Scene defaults = *loaded.at_rest;
+    defaults.environment = loaded.scene.environment;
+    content.add_defaults(defaults, aspect, o.scene, o.camera.empty(), notices);
+    loaded.scene.environment = defaults.environment;
+    loaded.scene.cameras = defaults.cameras;
+  }
   content.add_defaults(loaded.scene, aspect, o.scene, o.look_from.empty() && o.camera.empty(), notices);
   const Plan &plan = integrator(settings.integrator);
   for (const Light &light : loaded.scene.lights) {
@@ -75,7 +96,7 @@ LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, L
   }
   if (settings.nee_first && !loaded.scene.lights.empty())
     throw Error(o.scene, "has point, spot or directional lights, which no path meets by chance: with --nee first all that they light indirectly would be missing", "--nee every renders it");
-  const Camera camera = choose_camera(content, o, loaded.scene, aspect);
+  const Camera camera = choose_camera(content, o, loaded.scene, loaded.at_rest ? *loaded.at_rest : loaded.scene, aspect);
   loaded.import_seconds = now() - begun;
   const std::size_t estimate = content.estimate_memory(loaded.scene, layout).total();
   const double mebibytes = static_cast<double>(estimate) / 1048576.0;
@@ -138,6 +159,23 @@ void compile_session(Session &session, const RenderOptions &o, const RenderSetti
   begun = now();
   session.renderer->warm_up(half(0.5));
   session.compile_seconds += now() - begun;
+}
+
+void next_frame(Session &session, const RenderOptions &o, const RenderSettings &settings, Notices &notices) {
+  session.renderer.reset();  // before the next scene takes its memory
+  session.loaded = load_scene(o, settings, session.variant.layout, session.device.info(), notices, session.loaded.at_rest);
+  session.compile_seconds = 0;
+  const Variant variant = scene_variant(session.variant, session.loaded.flat, settings);
+  double begun = now();
+  if (variant != session.variant) {
+    session.variant = variant;
+    session.programs = std::make_unique<Programs>(session.device, variant);
+    session.compile_seconds = now() - begun;
+    begun = now();
+  }
+  session.renderer = std::make_unique<Renderer>(session.device, *session.programs, session.loaded.flat, session.loaded.camera, settings, Tuning{o.pool, session.variant.lanes});
+  session.device.finish();
+  session.upload_seconds = now() - begun;
 }
 
 }  // namespace sunstone

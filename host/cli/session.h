@@ -16,11 +16,13 @@ struct LoadedScene {
   kernel::Camera camera;
   double import_seconds = 0, build_seconds = 0;
   std::string line;  // what it is, in one line
+  std::shared_ptr<const Scene> at_rest;  // without its pictures, where the view is made up from it
 };
 
 // Imports and flattens by the flags of `render`: camera, environment, defaults. Throws Error where the estimate exceeds the device's memory, before
-// anything is flattened; says the estimate first where it is large.
-LoadedScene load_scene(const RenderOptions &options, const RenderSettings &settings, Layout layout, const DeviceInfo &info, Notices &notices);
+// anything is flattened; says the estimate first where it is large. `at_rest` is that of another time of the same scene.
+LoadedScene load_scene(const RenderOptions &options, const RenderSettings &settings, Layout layout, const DeviceInfo &info, Notices &notices,
+                       std::shared_ptr<const Scene> at_rest = {});
 
 // What the programs have to know of a scene.
 Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings);
@@ -39,5 +41,8 @@ Session open_session(const RenderOptions &options, const RenderSettings &setting
 
 // Then the kernels for it, and its renderer. `progress` is asked before each of them; the second half is their first launches.
 void compile_session(Session &session, const RenderOptions &options, const RenderSettings &settings, const CompileProgress &progress = {});
+
+// Another time of the session's scene: loaded and uploaded anew, for the same programs unless it asks for others.
+void next_frame(Session &session, const RenderOptions &options, const RenderSettings &settings, Notices &notices);
 
 }  // namespace sunstone

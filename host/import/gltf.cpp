@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // glTF 2.0 -> Scene. The parts: gltf_strict (bytes -> JSON), gltf_value (typed access), gltf_buffers, gltf_accessors, gltf_images, gltf_materials,
-// gltf_meshes, gltf_nodes. The sections cited are those of the glTF 2.0 specification.
+// gltf_skins, gltf_meshes, gltf_curves, gltf_animations, gltf_nodes. The sections cited are those of the glTF 2.0 specification.
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 
 #include "base/error.h"
 #include "base/file.h"
@@ -51,6 +52,27 @@ void check_required_extensions(const Value &root) {
   }
 }
 
+// What --time-at and --animation ask for; without a time the scene is at rest, and no animation is read.
+Animation chosen_animation(const Value &root, Accessors &accessors, const ImportOptions &options) {
+  const Context &context = root.context();
+  const std::size_t count = root["animations"].size();
+  if (!options.time) {
+    if (count > 0) context.notices.note(context.file, "shown at rest, and has " + counted(count, "animations") + " for --time-at SECONDS");
+    return {};
+  }
+  if (count == 0) {
+    expect_no_animation(context.file, options, context.notices);
+    return {};
+  }
+  const Animation animation(root, accessors, options.animation);
+  if (*options.time < animation.first() || *options.time > animation.last()) {
+    char text[120];
+    std::snprintf(text, sizeof text, "its animation goes from %.4g to %.4g seconds, and keeps still before and after", animation.first(), animation.last());
+    context.notices.note(context.file, text);
+  }
+  return animation;
+}
+
 }  // namespace
 
 Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options, Notices &notices) {
@@ -76,10 +98,10 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   Images images(root, buffers);
   Materials materials(root, images);
   Meshes meshes(root, accessors, materials);
-  Nodes(root, accessors, materials, meshes).import(scene);
+  const Animation animation = chosen_animation(root, accessors, options);
+  Nodes(root, accessors, materials, meshes).import(animation, options.time.value_or(0), scene);
   images.read(scene);
 
-  if (root["animations"].size() > 0) context.report.warning(file, "animations are not played: the scene is shown at rest");
   if (scene.instances.empty() && scene.shapes.empty()) context.report.warning(file, "there is no triangle in it to render");
   context.report.flush(notices);
   return scene;

@@ -67,7 +67,8 @@ int components_of(const Value &type) {
   if (name == "VEC2") return 2;
   if (name == "VEC3") return 3;
   if (name == "VEC4") return 4;
-  if (name == "MAT2" || name == "MAT3" || name == "MAT4") type.fail("a matrix has no use here");
+  if (name == "MAT4") return 16;
+  if (name == "MAT2" || name == "MAT3") type.fail("a matrix has no use here");
   type.fail(type ? "is none of SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3, MAT4" : "is missing");
 }
 
@@ -162,6 +163,14 @@ void Accessors::decode(const Accessor &a, float *out) {
   const std::vector<std::uint32_t> where = sparse_indices(a);
   const std::size_t element = component_bytes(a.component_type) * static_cast<std::size_t>(a.components);
   decode_elements(a, a.sparse->values, element, a.sparse->count, where.data(), out);
+}
+
+std::vector<double> Accessors::numbers(const Accessor &a) {
+  const std::size_t n = static_cast<std::size_t>(a.components);
+  budget_.take(a.count, n * (sizeof(float) + sizeof(double)), a.value);
+  std::vector<float> values(a.count * n);
+  if (!values.empty()) decode(a, values.data());
+  return {values.begin(), values.end()};
 }
 
 std::vector<std::uint32_t> Accessors::indices(const Accessor &a) {

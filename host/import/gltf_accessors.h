@@ -54,6 +54,7 @@ class Accessors {
     if (!out.empty()) decode(accessor, &out[0][0]);
     return out;
   }
+  std::vector<double> numbers(const Accessor &accessor);  // of all its elements, one after the other
   std::vector<std::uint32_t> indices(const Accessor &accessor);
   Budget &budget() { return budget_; }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "import/gltf_skins.h"
 
 namespace sunstone::gltf {
 
@@ -179,7 +180,7 @@ void Meshes::read_indices(const Value &value, Primitive &primitive) {
   primitive.indices = triangles_of(row, mode);
 }
 
-bool Meshes::read_primitive(const Value &value, const std::vector<double> &weights, Primitive &primitive) {
+bool Meshes::read_primitive(const Value &value, const std::vector<double> &weights, const std::optional<Joints> &joints, Primitive &primitive) {
   value.expect_object();
   value.check_extensions({"KHR_draco_mesh_compression"});
   const Value mode = value["mode"];
@@ -204,41 +205,44 @@ bool Meshes::read_primitive(const Value &value, const std::vector<double> &weigh
     value.warn("has no triangle and was skipped");
     return false;
   }
+  if (joints) apply_skin(attributes, *joints, accessors_, primitive);
   repair_normals(attributes["NORMAL"], primitive);
   repair_tangents(attributes["TANGENT"], primitive);
   return true;
 }
 
-Mesh Meshes::read(const Value &value, const std::vector<double> &weights, Scene &scene) {
+Mesh Meshes::read(const Value &value, const std::vector<double> &weights, const std::optional<Joints> &joints, Scene &scene) {
   const Value primitives = value["primitives"];
   if (primitives.size() == 0) primitives.fail(primitives ? "is empty" : "is missing");
   Mesh mesh;
   mesh.name = value["name"].text();
   for (std::size_t i = 0; i < primitives.size(); i++) {
     Primitive primitive;
-    if (!read_primitive(primitives[i], weights, primitive)) continue;
+    if (!read_primitive(primitives[i], weights, joints, primitive)) continue;
     primitive.material = materials_.material(primitives[i]["material"], scene);
     mesh.primitives.push_back(std::move(primitive));
   }
   return mesh;
 }
 
-int Meshes::mesh(const Value &node, Scene &scene) {
+int Meshes::mesh(const Value &node, const std::optional<std::vector<double>> &animated, const std::optional<Joints> &joints, Scene &scene) {
   const std::size_t index = node["mesh"].index(meshes_.size(), "meshes");
   const Value value = meshes_[index];
   value.expect_object();
   const Value weights_value = node["weights"] ? node["weights"] : value["weights"];
-  const std::vector<double> weights = weights_value.numbers(weights_value.size());
-  for (std::size_t i = 0; i < weights.size(); i++) weights_value[i].real(0);
-  const auto [found, is_new] = numbers_.try_emplace({index, weights}, -1);
-  if (is_new) {
+  const std::vector<double> weights = animated ? *animated : weights_value.numbers(weights_value.size());
+  if (!animated)
+    for (std::size_t i = 0; i < weights.size(); i++) weights_value[i].real(0);
+  const auto add = [&]() -> int {
     value.check_extensions({});
-    Mesh mesh = read(value, weights, scene);
-    if (!mesh.primitives.empty()) {
-      found->second = static_cast<int>(scene.meshes.size());
-      scene.meshes.push_back(std::move(mesh));
-    }
-  }
+    Mesh mesh = read(value, weights, joints, scene);
+    if (mesh.primitives.empty()) return -1;
+    scene.meshes.push_back(std::move(mesh));
+    return static_cast<int>(scene.meshes.size()) - 1;
+  };
+  if (joints) return add();
+  const auto [found, is_new] = numbers_.try_emplace({index, weights}, -1);
+  if (is_new) found->second = add();
   return found->second;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes: primitives of triangles in every mode, morph targets applied at their default weights.
+// Meshes: primitives of triangles in every mode, morph targets at the weights of the pose, skins.
 #pragma once
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,17 +12,19 @@
 
 namespace sunstone::gltf {
 
+using Joints = std::vector<glm::dmat4>;  // of a skin: mesh -> world
+
 class Meshes {
  public:
   Meshes(const Value &root, Accessors &accessors, Materials &materials) : meshes_(root["meshes"]), accessors_(accessors), materials_(materials) {}
 
   // The mesh that a node shows, as a number into Scene::meshes; -1 where nothing of it can be rendered. Nodes that share a mesh, and do not
-  // give it weights of their own, get the same one.
-  int mesh(const Value &node, Scene &scene);
+  // give it weights of their own, get the same one; what follows a skin is its node's alone, in world space.
+  int mesh(const Value &node, const std::optional<std::vector<double>> &weights, const std::optional<Joints> &joints, Scene &scene);
 
  private:
-  Mesh read(const Value &value, const std::vector<double> &weights, Scene &scene);
-  bool read_primitive(const Value &value, const std::vector<double> &weights, Primitive &primitive);
+  Mesh read(const Value &value, const std::vector<double> &weights, const std::optional<Joints> &joints, Scene &scene);
+  bool read_primitive(const Value &value, const std::vector<double> &weights, const std::optional<Joints> &joints, Primitive &primitive);
   void read_attributes(const Value &value, Primitive &primitive);
   void apply_morph_targets(const Value &targets, const std::vector<double> &weights, Primitive &primitive);
   void read_indices(const Value &value, Primitive &primitive);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "import/gltf_skins.h"
 
 namespace sunstone::gltf {
 
@@ -36,7 +37,7 @@ glm::dvec4 unit_quaternion(const glm::dvec4 &q, const Value &who) {
   return {0, 0, 0, 1};
 }
 
-glm::dmat4 local_transform(const Value &node) {
+glm::dmat4 local_transform(const Value &node, const Pose &pose) {
   if (const Value matrix = node["matrix"]) {
     const std::vector<double> m = matrix.numbers(16);
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) matrix.warn("its last row is not 0 0 0 1 and was taken as that");
@@ -56,7 +57,7 @@ glm::dmat4 local_transform(const Value &node) {
     const std::vector<double> v = value.numbers(3);
     s = {v[0], v[1], v[2]};
   }
-  return compose(t, q, s);
+  return compose(pose.translation.value_or(t), pose.rotation.value_or(q), pose.scale.value_or(s));
 }
 
 bool usable(const glm::dmat4 &m) {
@@ -81,6 +82,7 @@ Nodes::Nodes(const Value &root, Accessors &accessors, Materials &materials, Mesh
       cameras_(root["cameras"]),
       lights_(root.extension("KHR_lights_punctual")["lights"]),
       shapes_(root.extension("KHR_implicit_shapes")["shapes"]),
+      skins_(root["skins"]),
       accessors_(accessors),
       materials_(materials),
       meshes_(meshes) {}
@@ -150,30 +152,61 @@ std::vector<std::size_t> Nodes::scene_roots() {
   return roots;
 }
 
-void Nodes::import(Scene &scene) {
-  check_hierarchy();
+// World transforms of all below these roots. Depth first, in the file's order: each list is pushed from its end.
+void Nodes::place(const std::vector<std::size_t> &roots) {
   struct Visit {
     std::size_t node;
     glm::dmat4 parent;
   };
   std::vector<Visit> stack;
-  // Depth first, in the file's order: each list is pushed from its end.
-  const std::vector<std::size_t> roots = scene_roots();
   for (std::size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], glm::dmat4(1)});
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
-    const Value node = nodes_[visit.node];
-    const glm::dmat4 world = visit.parent * local_transform(node);
-    add_node(node, world, scene);
+    const glm::dmat4 world = visit.parent * local_transform(nodes_[visit.node], poses_[visit.node]);
+    worlds_[visit.node] = world;
+    order_.push_back(visit.node);
     const std::vector<std::uint32_t> &children = children_[visit.node];
     for (std::size_t i = children.size(); i-- > 0;) stack.push_back({children[i], world});
   }
 }
 
-void Nodes::add_node(const Value &node, const glm::dmat4 &world, Scene &scene) {
+void Nodes::import(const Animation &animation, double time, Scene &scene) {
+  check_hierarchy();
+  const std::size_t count = nodes_.size();
+  for (std::size_t i = 0; i < count; i++) poses_.push_back(animation.pose(i, time));
+  worlds_.assign(count, glm::dmat4(1));
+  const std::vector<std::size_t> roots = scene_roots();
+  place(roots);
+  const std::vector<std::size_t> shown = order_;
+  if (skins_) {
+    // Joints may stand outside the scene.
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < count; i++)
+      if (parents_[i] < 0 && std::find(roots.begin(), roots.end(), i) == roots.end()) others.push_back(i);
+    place(others);
+  }
+  for (const std::size_t i : shown) add_node(i, scene);
+}
+
+std::optional<Joints> Nodes::joints_of(const Value &node) {
+  const Value reference = node["skin"];
+  if (!reference) return {};
+  const Value skin = skins_[reference.index(skins_.size(), "skins")];
+  const std::vector<std::size_t> numbers = read_joints(skin, nodes_.size());
+  accessors_.budget().take(numbers.size(), 2 * sizeof(glm::dmat4), skin);
+  Joints worlds;
+  for (const std::size_t joint : numbers) worlds.push_back(worlds_[joint]);
+  Joints joints = joint_matrices(skin, worlds, accessors_);
+  for (const glm::dmat4 &joint : joints)
+    if (!usable(joint)) skin.fail("the transform of one of its joints is not finite or beyond all measure");
+  return joints;
+}
+
+void Nodes::add_node(std::size_t number, Scene &scene) {
+  const Value node = nodes_[number];
+  const glm::dmat4 &world = worlds_[number];
   node.check_extensions({"KHR_lights_punctual", "EXT_mesh_gpu_instancing"});
-  if (node["skin"]) node.context().report.once(node.context().file, "skins are not applied: skinned meshes are shown as they are stored");
   const Value mesh = node["mesh"], camera = node["camera"], light = node.extension("KHR_lights_punctual");
   // Extras may be anything at all.
   const Value extras = node["extras"], shape = extras && extras.json().is_object() ? extras["sunstone_shape"] : Value(node.context(), nullptr, "");
@@ -182,20 +215,23 @@ void Nodes::add_node(const Value &node, const glm::dmat4 &world, Scene &scene) {
     node.warn("its transform is not finite or beyond all measure, so it was left out");
     return;
   }
-  if (mesh) add_instances(node, world, scene);
+  if (mesh) add_instances(node, poses_[number].weights, world, scene);
   if (camera) add_camera(node, world, scene);
   if (light) add_light(node, world, scene);
   if (shape) add_shape(node, shape, world, scene);
 }
 
-void Nodes::add_instances(const Value &node, const glm::dmat4 &world, Scene &scene) {
-  const int mesh = meshes_.mesh(node, scene);
+void Nodes::add_instances(const Value &node, const std::optional<std::vector<double>> &weights, const glm::dmat4 &world, Scene &scene) {
+  const Value instancing = node.extension("EXT_mesh_gpu_instancing");
+  if (instancing && node["skin"]) instancing.warn("a mesh that is placed many times does not follow its skin");
+  const std::optional<Joints> joints = instancing ? std::nullopt : joints_of(node);
+  const int mesh = meshes_.mesh(node, weights, joints, scene);
   if (mesh < 0) return;
   std::string name = node["name"].text();
   if (name.empty()) name = scene.meshes[static_cast<std::size_t>(mesh)].name;
-  const Value instancing = node.extension("EXT_mesh_gpu_instancing");
   if (!instancing) {
-    scene.instances.push_back({std::move(name), mesh, rounded(world)});
+    // Joints alone say where a skinned mesh is: its node's own place has no part in it.
+    scene.instances.push_back({std::move(name), mesh, joints ? glm::mat4x3(1) : rounded(world)});
     return;
   }
   const Value attributes = instancing["attributes"];

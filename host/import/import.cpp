@@ -53,10 +53,16 @@ Scene import_scene(const std::filesystem::path &path, const ImportOptions &optio
                 suffix.empty() ? "has no suffix that names its format" : "\"" + printable(suffix) + "\" is not a format of scenes that is read",
                 "scenes are .gltf, .glb or .obj");
   if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, error) == 0 && !error) throw Error(shown, "is empty");
+  if (!gltf) expect_no_animation(shown, options, notices);
   Scene scene = gltf ? import_gltf(path, options, notices) : import_obj(path, options, notices);
   if (scene.name.empty()) scene.name = path.stem().string();
   validate(scene, shown, notices);
   return scene;
+}
+
+void expect_no_animation(const std::string &file, const ImportOptions &options, Notices &notices) {
+  if (!options.animation.empty()) throw UsageError("--animation " + printable(options.animation), file + " has no animation");
+  if (options.time) notices.note(file, "has no animation: it is the same at every time");
 }
 
 std::filesystem::path resolve_resource(const std::filesystem::path &folder, const std::string &name, const ImportOptions &options,

@@ -2,6 +2,8 @@
 // A file's suffix chooses its importer; the importer yields a valid Scene and notices, or throws one Error that names file and place.
 #pragma once
 #include <filesystem>
+#include <optional>
+#include <string>
 
 #include "base/notice.h"
 #include "scene/scene.h"
@@ -10,6 +12,8 @@ namespace sunstone {
 
 struct ImportOptions {
   bool allow_outside = false;  // read resources outside the scene's own folder
+  std::optional<double> time;  // seconds, finite: the pose of `animation` then; without it the one that is stored
+  std::string animation;       // its name or number; empty: the first
 };
 
 // .gltf .glb .obj. Every index, size and number of what comes back has been checked (scene/validate.h).

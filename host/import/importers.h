@@ -5,6 +5,9 @@
 
 namespace sunstone {
 
+// Says that a file has nothing to play, where options ask for a time; an animation that they name is an Error.
+void expect_no_animation(const std::string &file, const ImportOptions &options, Notices &notices);
+
 Scene import_gltf(const std::filesystem::path &path, const ImportOptions &options, Notices &notices);
 Scene import_obj(const std::filesystem::path &path, const ImportOptions &options, Notices &notices);
 

@@ -422,6 +422,7 @@ std::map<std::string, std::string> film_settings(const RenderSettings &s, const 
           {"filter_radius", fmt::format("{}", s.filter.radius)},
           {"background", s.transparent_background ? "transparent" : "scene"},
           {"camera", hasher.digest().hex()}};
+  if (s.time) all["time-at"] = fmt::format("{}", *s.time);
   for (const std::string &flag : integrator(s.integrator).takes) {
     const std::string name = flag.substr(2);
     if (flag == "--end-on-light") all[name] = s.end_on_light ? "yes" : "no";

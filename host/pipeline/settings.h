@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct RenderSettings {
   std::string integrator = "path";
   unsigned max_depth = 16, roulette_depth = 4;
   std::uint32_t seed = 0;
+  std::optional<double> time;  // seconds into the animation, as the scene was imported
   bool independent = false;  // sampler: plain hashes instead of Sobol'
   Filter filter;
   bool transparent_background = false;

@@ -2,6 +2,7 @@
 // sunstone render from end to end: pictures, films, ranges of samples, checkpoints, statistics, what it says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -94,6 +95,73 @@ TEST(Render, RangesOfSamplesMergeToOneRun) {
   ASSERT_EQ(whole.layers.size(), sum.layers.size());
   for (std::size_t i = 0; i < whole.layers.size(); i++) EXPECT_EQ(whole.layers[i].values, sum.layers[i].values) << whole.layers[i].name;
   EXPECT_EQ(whole.samples, sum.samples);
+}
+
+namespace {
+
+// A triangle before a camera, which goes to the right by 1 a second, for two seconds; alone in the light of --env.
+void write_moving_triangle(const std::filesystem::path &path) {
+  std::ofstream(path) << R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "scene": 0, "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}, {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR"},
+                  {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8}, {"buffer": 0, "byteOffset": 44, "byteLength": 24}],
+    "buffers": [{"byteLength": 68, "uri": "motion.bin"}]})";
+  const float numbers[17] = {-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 2, 0, 0, 0, 2, 0, 0};
+  std::ofstream(path.parent_path() / "motion.bin", std::ios::binary).write(reinterpret_cast<const char *>(numbers), sizeof numbers);
+}
+
+}  // namespace
+
+// A frame is the picture of its time, whichever range it is rendered in; the view, made up from the scene at rest, stands still.
+TEST(Render, FramesAreThePicturesOfTheirTimes) {
+  const TemporaryFolder folder;
+  write_moving_triangle(folder / "move.gltf");
+  const std::vector<std::string> before = listing(folder / "");
+  const auto go = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"render", "move.gltf", "--size", "24x16", "--max-depth", "1", "--env", "1,1,1", "-q"});
+    if (std::ranges::find(words, "--samples") == words.end()) words.insert(words.end(), {"--spp", "4"});
+    RunOptions run;
+    run.folder = folder / "";
+    const Ended ended = run_sunstone(words, run);
+    EXPECT_EQ(ended.status, 0) << ended.error;
+    return ended;
+  };
+  go({"--frames", "9:12", "--fps", "10", "-o", "all.film", "-o", "all.png", "--stats", "s.json"});
+  std::vector<std::string> after = before;
+  for (const char *name : {"all.0009.film", "all.0010.film", "all.0011.film", "all.0009.png", "all.0010.png", "all.0011.png", "s.0009.json", "s.0010.json", "s.0011.json"})
+    after.emplace_back(name);
+  std::sort(after.begin(), after.end());
+  EXPECT_EQ(listing(folder / ""), after);
+  go({"--frames", "11:12", "--fps", "10", "-o", "alone.film"});
+  go({"--time-at", "1", "-o", "at-1.film"});
+  go({"--time-at", "1", "--frames", "0:1", "-o", "from-1.film"});
+  go({"-o", "rest.film"});
+  EXPECT_EQ(hash_of(folder, "all.0011.film"), hash_of(folder, "alone.0011.film"));
+  EXPECT_EQ(hash_of(folder, "all.0010.film"), hash_of(folder, "at-1.film"));
+  EXPECT_EQ(hash_of(folder, "from-1.0000.film"), hash_of(folder, "at-1.film"));
+  EXPECT_NE(hash_of(folder, "all.0009.film"), hash_of(folder, "all.0010.film"));
+  EXPECT_NE(hash_of(folder, "rest.film"), hash_of(folder, "at-1.film"));
+  EXPECT_EQ(read_json(folder / "s.0010.json").at("film_hash"), hash_of(folder, "all.0010.film"));
+
+  const Film rest = read_film(folder / "rest.film"), later = read_film(folder / "at-1.film");
+  EXPECT_EQ(rest.settings.at("camera"), later.settings.at("camera")) << "the view stands still";
+  EXPECT_FALSE(rest.settings.contains("time-at"));
+  EXPECT_EQ(later.settings.at("time-at"), "1");
+  EXPECT_NE(rest.scene_hash, later.scene_hash);
+  RunOptions run;
+  run.folder = folder / "";
+  const auto merge = [&](const char *a, const char *b) {
+    const Ended merged = run_sunstone({"merge", a, b, "-o", "sum.film"}, run);
+    EXPECT_EQ(merged.status, 1);
+    return merged.error;
+  };
+  EXPECT_NE(merge("all.0009.film", "all.0010.film").find("scenes differ"), std::string::npos);
+  // Beyond its end all is the same, but for what was asked for.
+  go({"--frames", "3:5", "--fps", "1", "--samples", "0:4", "-o", "end.film"});
+  EXPECT_EQ(read_film(folder / "end.0003.film").scene_hash, read_film(folder / "end.0004.film").scene_hash);
+  EXPECT_NE(merge("end.0003.film", "end.0004.film").find("time-at is 3"), std::string::npos);
 }
 
 TEST(Render, CheckpointAndResumeEqualOneRun) {

@@ -118,6 +118,22 @@ TEST(Usage, FlagsOfOneIntegrator) {
     expect_refusal({"render", cornell, "--integrator", "hybrid", "--absorption", chance}, 2, "--absorption");
 }
 
+TEST(Usage, TimesAndFrames) {
+  for (const char *time : {"", "soon", "nan", "inf", "-1e10", "1,2"}) expect_refusal({"render", cornell, "--time-at", time}, 2, "--time-at");
+  expect_refusal({"info", cornell, "--time-at", "nan"}, 2, "--time-at");
+  for (const char *command : {"render", "info"}) {
+    expect_refusal({command, cornell, "--animation", "walk"}, 2, "--time-at SECONDS");
+    expect_refusal({command, cornell, "--animation", "walk", "--time-at", "1"}, 2, "has no animation");
+  }
+  for (const char *frames : {"7", "7:7", "8:7", ":7", "7:", "-1:7", "a:b", "0:1:2", "0:10000001", "0.5:2"}) expect_refusal({"render", cornell, "--frames", frames}, 2, "--frames");
+  expect_refusal({"render", cornell, "--fps", "24"}, 2, "--frames");
+  for (const char *fps : {"0", "-24", "nan", "1e7", "often"}) expect_refusal({"render", cornell, "--frames", "0:2", "--fps", fps}, 2, "--fps");
+  expect_refusal({"render", cornell, "--frames", "0:2", "--checkpoint", "c.film"}, 2, "--checkpoint");
+  expect_refusal({"render", cornell, "--frames", "0:2", "--resume", "no.film"}, 2, "--resume");
+  expect_refusal({"render", cornell, "--frames", "0:2", "--update", "5"}, 2, "--update");
+  expect_refusal({"render", cornell, "--frames", "0:2", "-o", "no-such-folder/a.png"}, 1, "no-such-folder");
+}
+
 TEST(Usage, OutputsThatCannotBeWritten) {
   expect_refusal({"render", cornell, "-o", "no-such-folder/out.png"}, 1, "no-such-folder");
   expect_refusal({"render", cornell, "-o", "folder.png"}, 1, "folder.png");

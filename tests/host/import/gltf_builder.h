@@ -33,11 +33,12 @@ constexpr int component_type() {
   }
 }
 
-inline int components(const std::string &type) { return type == "SCALAR" ? 1 : type.back() - '0'; }
+inline int components(const std::string &type) { return type == "SCALAR" ? 1 : type == "MAT4" ? 16 : type.back() - '0'; }
 
 class GltfBuilder {
  public:
   nlohmann::json root;
+  ImportOptions options;
 
   // A scene of one node with one mesh of one triangle: (0,0,0) (1,0,0) (0,1,0).
   GltfBuilder() {
@@ -84,7 +85,7 @@ class GltfBuilder {
   }
   Scene import(Notices &notices) const {
     const TemporaryFolder folder;
-    return import_gltf(folder.write("test.glb", glb()), {}, notices);
+    return import_gltf(folder.write("test.glb", glb()), options, notices);
   }
   // Expects that nothing was to be warned about.
   Scene import() const {

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// --time-at and --animation: what an animated scene looks like then.
+#include <charconv>
+#include <cmath>
+
+#include "base/error.h"
+#include "cli/commands.h"
+
+namespace sunstone {
+
+void add_pose_options(CLI::App &command, ImportOptions &options) {
+  command
+      .add_option_function<std::string>(
+          "--time-at",
+          [&options](const std::string &text) {
+            double seconds = 0;
+            const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+            if (error != std::errc() || rest != text.data() + text.size() || !(std::fabs(seconds) <= 1e9))
+              throw CLI::ValidationError("--time-at", printable(text) + " is no time in seconds, at most 1e9");
+            options.time = seconds;
+          },
+          "Show the animation at this time [what is stored, at rest]")
+      ->type_name("SECONDS")
+      ->group("Motion");
+  command.add_option("--animation", options.animation, "The file's animation of this name or number [0]")->type_name("NAME|INDEX")->group("Motion");
+}
+
+void check_pose_options(const ImportOptions &options) {
+  if (!options.animation.empty() && !options.time)
+    throw UsageError("--animation " + printable(options.animation), "is shown at a time, which is not given", "--time-at SECONDS gives it");
+}
+
+}  // namespace sunstone
