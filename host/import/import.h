@@ -12,8 +12,8 @@ namespace sunstone {
 
 struct ImportOptions {
   bool allow_outside = false;  // read resources outside the scene's own folder
-  std::optional<double> time;  // seconds, finite: the pose of `animation` then; without it the one that is stored
-  std::string animation;       // its name or number; empty: the first
+  std::optional<double> time{};  // seconds, finite: the pose of `animation` then; without it the one that is stored
+  std::string animation{};       // its name or number; empty: the first
 };
 
 // .gltf .glb .obj. Every index, size and number of what comes back has been checked (scene/validate.h).
