@@ -236,7 +236,7 @@ void add_bench(CLI::App &app, CommandContext &context) {
     CLI::App *command = bench->add_subcommand(name, what);
     add_render_options(*command, options->render);
     command->get_option("scene")->required(false);
-    command->remove_option(command->get_option("--output"));
+    for (const char *of_files : {"--output", "--frames", "--fps"}) command->remove_option(command->get_option(of_files));
     command->add_option("--json", options->json, "Write the same as JSON")->type_name("FILE");
     command->add_option("--repeats", options->repeats, "Timed runs, after one that is not [5]")->check(CLI::Range(1, 1000))->type_name("N");
     if (std::string_view(name) == "traversal") command->add_option("--rays", options->rays, "Primary rays a side [1024]")->check(CLI::Range(16, 8192))->type_name("N");
