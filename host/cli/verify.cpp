@@ -24,7 +24,8 @@ struct Expected {
 };
 constexpr Expected expected[] = {{"path", "8a59847fca232a7958695e5dcdadb6b4"}, {"pure", "036424246eac7cec0b5f27f98aeb44b4"}, {"hybrid", "284d85983cb5cfe8fd56093010e49436"},
                                  {"distribution", "952d39ff8537a814c32e00dbdf90c717"},
-                                 {"whitted", "6494b1f18656ac1e9649298982accc55"}};
+                                 {"whitted", "6494b1f18656ac1e9649298982accc55"},
+                                 {"bdpt", "94378866ba24ca4966021e916bc3eecd"}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
