@@ -118,16 +118,6 @@ LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, L
   return loaded;
 }
 
-Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings) {
-  variant.bidirectional = integrator(settings.integrator).bidirectional;
-  variant.passable = scene.has_passable;
-  variant.specular = scene.has_specular;
-  variant.shapes = scene.shape_count > 0;
-  variant.textures = scene.has_textures;
-  variant.branching = branches(settings);
-  return variant;
-}
-
 Session open_session(const RenderOptions &o, const RenderSettings &settings, Notices &notices) {
   Session session;
   // The platforms come up first: the content object brings another TBB.

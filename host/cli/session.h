@@ -24,9 +24,6 @@ struct LoadedScene {
 LoadedScene load_scene(const RenderOptions &options, const RenderSettings &settings, Layout layout, const DeviceInfo &info, Notices &notices,
                        std::shared_ptr<const Scene> at_rest = {});
 
-// What the programs have to know of a scene.
-Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings);
-
 struct Session {
   Device device;
   Variant variant;

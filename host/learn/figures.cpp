@@ -20,6 +20,7 @@ std::span<const Figure> figures() {
       {"depth", "What each depth contributes", "radiance and rays by depth, and the closed furnace whose series is known", 40, draw_depth},
       {"branching", "The argument against branching", "trees of rays and paths at equal numbers of rays: rays and light by depth, variance", 90, draw_branching},
       {"pseudo-code", "The pseudo-code against pure path tracing", "each deviation alone: means, variances, rays; and the classic mistake", 120, draw_pseudo_code},
+      {"strategies", "The strategies of bidirectional path tracing", "each way to join a path from the eye and one from a light, alone and weighted", 90, draw_strategies},
       {"paths", "The paths of one pixel", "every vertex drawn over the picture and in a table, with pdf, throughput and contribution", 20, draw_paths},
   };
   return table;

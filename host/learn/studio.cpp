@@ -24,11 +24,7 @@ const StudioScene &Studio::scene(const Shot &shot) {
 
 std::unique_ptr<Renderer> Studio::renderer(const Shot &shot, unsigned pool) {
   const StudioScene &scene = this->scene(shot);
-  Variant variant = variant_;
-  variant.passable = scene.flat.has_passable;
-  variant.specular = scene.flat.has_specular;
-  variant.textures = scene.flat.has_textures;
-  variant.branching = shot.settings.indirect_samples > 1;
+  const Variant variant = scene_variant(variant_, scene.flat, shot.settings);
   const auto same = [&](const std::unique_ptr<Programs> &programs) { return programs->variant == variant; };
   auto found = std::ranges::find_if(programs_, same);
   if (found == programs_.end()) {

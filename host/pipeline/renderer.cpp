@@ -159,6 +159,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   const std::size_t room = device.info().memory > device.allocated() ? (device.info().memory - device.allocated()) / 2 : 0;
   s.tiles = split(settings, bytes_a_pixel, std::min(device.info().max_allocation, room));
   if (branches(settings) && !programs.variant.branching) throw std::logic_error("programs without branches");
+  if (scene.shape_count > 0 && !programs.variant.shapes) throw std::logic_error("programs without shapes");
   const unsigned branch_records = programs.variant.branching ? SUN_BRANCH_RECORDS(settings.max_depth) : 0;
   if (s.plan.bidirectional && s.tiles.size() > 1)
     throw Error("film", fmt::format("a picture of {}x{} does not fit on the device in one piece, and the light subpaths of --integrator {} may light any pixel", settings.width, settings.height, s.plan.name),

@@ -68,6 +68,16 @@ Variant device_variant(const DeviceInfo &info) {
   return variant;
 }
 
+Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings) {
+  variant.bidirectional = integrator(settings.integrator).bidirectional;
+  variant.passable = scene.has_passable;
+  variant.specular = scene.has_specular;
+  variant.shapes = scene.shape_count > 0;
+  variant.textures = scene.has_textures;
+  variant.branching = branches(settings);
+  return variant;
+}
+
 Layout device_layout(const DeviceInfo &info) {
   if (!info.cpu || info.native_float_width < 4) return Layout::binary;
   return info.native_float_width >= 16 ? Layout::wide16 : Layout::wide8;

@@ -29,6 +29,8 @@ struct Variant {
 
 // Lanes, layout of paths and chunks that suit a device: explicit vectors on CPUs, one path a work-item in columns on GPUs.
 Variant device_variant(const DeviceInfo &info);
+// What of it a scene and the settings of its picture need.
+Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings);
 // The layout of the BVH that suits a device.
 Layout device_layout(const DeviceInfo &info);
 

@@ -43,14 +43,7 @@ Variant variant_of(const Case &scene, const RenderSettings &settings, const Ways
   v.columns = ways.columns.value_or(v.columns);
   v.chunk = ways.chunk.value_or(v.chunk);
   v.branching = branches(settings);
-  if (ways.trimmed) {
-    const FlatScene &flat = scene.flat(v.layout);
-    v.passable = flat.has_passable;
-    v.specular = flat.has_specular;
-    v.shapes = flat.shape_count > 0;
-    v.textures = flat.has_textures;
-  }
-  return v;
+  return ways.trimmed ? scene_variant(v, scene.flat(v.layout), settings) : v;
 }
 
 }  // namespace
