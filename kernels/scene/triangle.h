@@ -291,7 +291,7 @@ SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fra
   t = t > place->world.far ? (tri_float)(place->world.far) : t;
 
   // Seen from behind: clockwise in the mesh's own space, so a mirrored instance's front stays its front.
-  if (search->want != SUN_WANT_BOTH_SIDES) ok = ok & !(((id & SUN_ID_SINGLE_SIDED) != 0) & (d.det < 0.0f));
+  if (!SUN_BIDIRECTIONAL || search->want != SUN_WANT_BOTH_SIDES) ok = ok & !(((id & SUN_ID_SINGLE_SIDED) != 0) & (d.det < 0.0f));
   if (search->want == SUN_WANT_OPAQUE) ok = ok & ((id & SUN_ID_PASSABLE) == 0);
   if (search->want == SUN_WANT_PASSABLE) ok = ok & ((id & SUN_ID_PASSABLE) != 0);
 
