@@ -119,6 +119,8 @@ Pool::Pool(const Device &device, unsigned slots_, unsigned chunk, unsigned light
   status.fill_zero();
   paths.fill_zero();
   branches.fill_zero();
+  walks.fill_zero();
+  light_vertices.fill_zero();  // lanes without a vertex load one all the same: what is in it has to be an index, a roughness
 }
 
 StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool &pool, const Buffer<kernel::Frame> &frame, const Buffer<std::int64_t> &film)

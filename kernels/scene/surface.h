@@ -390,7 +390,8 @@ SUN_FN vec3 solid_transmittance(const Scene *scene, uint_n material, real distan
   vec3 left = splat3((real)(1.0f));
   if (ANY(within)) {
     vec3 a;
-    GATHER_VEC3(a, scene->materials, material, absorption[0]);
+    uint_n known = within ? material : (uint_n)(0);  // lanes that are not within one need not name any
+    GATHER_VEC3(a, scene->materials, known, absorption[0]);
     vec3 passed = make_vec3(exp_real(-a.x * distance), exp_real(-a.y * distance), exp_real(-a.z * distance));
     left = select3(within, passed, left);
   }
