@@ -123,9 +123,9 @@ std::string draw_branching(Easel &easel) {
   };
   const double worse = web.statistics.variance * web.rays / base, worse_of_use = web.statistics.variance * web.of_use / base_of_use;
   const std::string finding =
-      fmt::format("Sixteen rays at each hit lower the variance of a sample {:.2f} times and cost {:.0f} times the rays: for equal rays the variance is {} times that of a path ({} times if rays of the last depth are not counted). {:.1f} % of the tree's rays are at "
+      fmt::format("A sample with sixteen rays at each hit has {:.2f} times the variance of a path and costs {:.0f} times the rays: for equal rays the variance is {} times that of a path ({} times if rays of the last depth are not counted). {:.1f} % of the tree's rays are at "
                   "depth {}, for {:.1f} % of the reflected light.",
-                  path.statistics.variance / web.statistics.variance, web.rays / path.rays, show_number(worse, 3), show_number(worse_of_use, 3), 100 * share(web, deepest), deepest, 100 * light[deepest] / reflected);
+                  web.statistics.variance / path.statistics.variance, web.rays / path.rays, show_number(worse, 3), show_number(worse_of_use, 3), 100 * share(web, deepest), deepest, 100 * light[deepest] / reflected);
   Page page("The argument against branching", "Equal numbers of rays: 16 × 16 × 16, or paths.");
   page.text("A page that the lecture quotes casts 16 rays at each hit, so three bounces make 16 × 16 × 16 = 4096 rays at the last. Here trees with 2, 4 and 16 rays at each hit stand beside paths, with as many rays a pixel each, to the same depth and for the same integral.");
   page.pictures(pictures);
