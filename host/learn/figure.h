@@ -51,6 +51,7 @@ std::string draw_depth(Easel &easel);
 std::string draw_pseudo_code(Easel &easel);
 std::string draw_l1_l2(Easel &easel);
 std::string draw_branching(Easel &easel);
+std::string draw_history(Easel &easel);
 std::string draw_strategies(Easel &easel);
 std::string draw_paths(Easel &easel);
 

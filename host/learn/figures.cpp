@@ -21,6 +21,7 @@ std::span<const Figure> figures() {
       {"branching", "The argument against branching", "trees of rays and paths at equal numbers of rays: rays and light by depth, variance", 90, draw_branching},
       {"pseudo-code", "The pseudo-code against pure path tracing", "each deviation alone: means, variances, rays; and the classic mistake", 120, draw_pseudo_code},
       {"strategies", "The strategies of bidirectional path tracing", "each way to join a path from the eye and one from a light, alone and weighted", 90, draw_strategies},
+      {"history", "From Whitted to photon maps", "one room by each method of the history at equal time, with error maps", 200, draw_history},
       {"paths", "The paths of one pixel", "every vertex drawn over the picture and in a table, with pdf, throughput and contribution", 20, draw_paths},
   };
   return table;

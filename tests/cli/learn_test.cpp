@@ -15,7 +15,7 @@ namespace sunstone::test {
 namespace {
 
 const std::string cornell = scene("cornell/cornell.gltf");
-const char *const figures[] = {"bounces", "l1-l2", "convergence", "light-sampling", "depth", "branching", "pseudo-code", "strategies", "paths"};
+const char *const figures[] = {"bounces", "l1-l2", "convergence", "light-sampling", "depth", "branching", "pseudo-code", "strategies", "history", "paths"};
 
 std::string read(const std::filesystem::path &path) {
   std::ifstream in(path, std::ios::binary);

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// The history of the methods in one room, each with the same time.
+#include <fmt/format.h>
+
+#include "learn/figure.h"
+#include "learn/fit.h"
+#include "learn/pictures.h"
+
+namespace sunstone {
+
+namespace {
+
+struct Chapter {
+  const char *integrator, *who, *says;
+};
+constexpr Chapter chapters[] = {
+    {"whitted", "Whitted 1980", "Mirrors, glass and lamps without extent (a spot light stands for the lamp). What matt walls send each other is one constant, the ambient term, and glass casts a plain shadow."},
+    {"distribution", "Cook, Porter, Carpenter 1984", "Rays spread over the lamp: soft shadows. Light between matt walls is left out still, so what the lamp does not see is black."},
+    {"pure", "Kajiya 1986", "All light, by one integral, and nothing known of where the lamp is: a path has to run into it."},
+    {"path", "Kajiya 1986, Veach & Guibas 1995", "The same integral with shadow rays, weighted. Light that glass has gathered still is found by chance alone, so there are bright specks."},
+    {"bdpt", "Lafortune & Willems 1993, Veach & Guibas 1995", "Paths from the lamp as well: the caustic is smooth. What the mirror shows of it is not."},
+};
+
+constexpr const char *lamp_scene = "cornell-caustic/cornell-caustic.gltf", *spot_scene = "cornell-caustic/spot-lamp.gltf";
+constexpr unsigned deepest = 10;
+
+}  // namespace
+
+std::string draw_history(Easel &easel) {
+  const double seconds = easel.size(8.0, 0.05), count = static_cast<double>(std::size(chapters));
+  const int side = easel.size(192, 16);
+  RenderSettings settings = figure_settings(side, side, "bdpt", deepest);
+  settings.layers.bounces = false;
+  settings.seed = 1000;  // of no contestant
+  Image reference;
+  double whole = 0;
+  {
+    const auto renderer = easel.studio.renderer({lamp_scene, "", settings});
+    easel.studio.piece(0.5, "the reference");
+    easel.studio.render_for(*renderer, 0, easel.size(10 * seconds, 0.5));
+    reference = beauty_of(renderer->film());
+    write_png(easel.file("history-reference.png"), renderer->film());
+    whole = mean_luminance(reference);
+  }
+  settings.seed = 0;
+  Table table{{"method", "integrator", "seconds", "samples a pixel", "mean light, % of the reference", "RMSE", "relMSE"}, {}};
+  std::vector<Picture> pictures, errors;
+  std::string finding;
+  for (const Chapter &c : chapters) {
+    RenderSettings own = settings;
+    own.integrator = c.integrator;
+    const bool spot = c.integrator == std::string("whitted");
+    if (spot) own.ambient = {0.3f, 0.27f, 0.22f};
+    const auto renderer = easel.studio.renderer({spot ? spot_scene : lamp_scene, "", own});
+    easel.studio.piece(0.5 / count, c.integrator);
+    const double passed = easel.studio.render_for(*renderer, 0, seconds);
+    const Image image = beauty_of(renderer->film());
+    const Comparison error = load_content().compare_images(image, reference);
+    const double light = 100 * mean_luminance(image) / whole;
+    const std::string stem = fmt::format("history-{}", c.integrator);
+    write_png(easel.file(stem + ".png"), renderer->film());
+    write_png(easel.file(stem + "-error.png"), error_map(image, reference, 0.5));
+    pictures.push_back({easel.file(stem + ".png"), fmt::format("{} (`{}`). {}", c.who, c.integrator, c.says)});
+    errors.push_back({easel.file(stem + "-error.png"), fmt::format("error of `{}`: relMSE {}", c.integrator, show_number(error.relmse, 3))});
+    table.rows.push_back({c.who, c.integrator, fmt::format("{:.2f}", passed), std::to_string(renderer->film().sample_count()), fmt::format("{:.2f}", light), fmt::format("{:.5g}", error.rmse), fmt::format("{:.5g}", error.relmse)});
+    finding += fmt::format("{}`{}` {}", finding.empty() ? "" : ", ", c.integrator, show_number(error.relmse, 3));
+  }
+  finding = fmt::format("relMSE after {} s each: {}.", seconds, finding);
+  write_csv(easel.file("history.csv"), table);
+  Page page("Whitted, Cook, Kajiya, Lafortune and Veach, Jensen", "One room with a lamp, a mirror ball and a ball of glass, by each method of the history, each with the same time.");
+  page.pictures(pictures);
+  page.heading("What each has wrong");
+  page.pictures(errors);
+  page.text("Error is |x − r|, black for none, white for 0.5 and more, r the picture below. It has two kinds: noise, which more time removes, and light that a method does not follow or blurs, which time does not. "
+            "The mean of the light tells them apart: noise does not move it.");
+  page.pictures({{easel.file("history-reference.png"), "the reference"}});
+  page.heading("What was measured");
+  page.table(table);
+  page.text(finding);
+  page.text(fmt::format("Seconds are of rendering alone, kernels compiled and warm. The reference is `bdpt` with {} s and another seed; it has noise of its own, most of it where the mirror shows the caustic, and that is in each figure.", show_number(easel.size(10 * seconds, 0.5), 2)));
+  page.command(fmt::format("sunstone render scenes/{} --integrator bdpt --size {}x{} --filter box --max-depth {} --time {} -o bdpt.png", lamp_scene, side, side, deepest, seconds));
+  page.write(easel.file("history.html"));
+  return finding;
+}
+
+}  // namespace sunstone
