@@ -74,16 +74,41 @@ TEST(GltfMutants, NeverCrash) {
                           {{"mesh", 0}, {"rotation", {0, 0, 1, 1}}}};
     seeds.emplace_back("everything.glb", file.glb());
   }
+  {
+    // A skin whose joint is turned, a morph target whose weight changes, and something that goes along a spline.
+    test::GltfBuilder file;
+    const std::vector<float> unit = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    std::vector<float> twice = unit;
+    twice.insert(twice.end(), unit.begin(), unit.end());
+    file.root["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"children", {2}}}, {{"translation", {0, 1, 0}}}, {{"mesh", 0}}};
+    file.root["scenes"][0]["nodes"] = {0, 1, 3};
+    file.root["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", file.accessor<float>("MAT4", twice)}}};
+    file.primitive()["attributes"]["JOINTS_0"] = file.accessor<std::uint8_t>("VEC4", {0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    file.primitive()["attributes"]["WEIGHTS_0"] = file.accessor<std::uint8_t>("VEC4", {128, 127, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0}, true);
+    file.primitive()["targets"] = {{{"POSITION", file.accessor<float>("VEC3", std::vector<float>(9, 0.5f))}}};
+    const int times = file.accessor<float>("SCALAR", {0, 1, 2});
+    const int turns = file.accessor<std::int16_t>("VEC4", {0, 0, 0, 32767, 0, 0, 32767, 0, 32767, 0, 0, 0}, true), weights = file.accessor<std::uint8_t>("SCALAR", {0, 255, 0}, true);
+    const int spline = file.accessor<float>("VEC3", std::vector<float>(27, 0.25f));
+    file.root["animations"] = {{{"samplers", {{{"input", times}, {"output", turns}}, {{"input", times}, {"output", weights}, {"interpolation", "STEP"}},
+                                              {{"input", times}, {"output", spline}, {"interpolation", "CUBICSPLINE"}}}},
+                                {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "rotation"}}}}, {{"sampler", 1}, {"target", {{"node", 0}, {"path", "weights"}}}},
+                                              {{"sampler", 2}, {"target", {{"node", 3}, {"path", "translation"}}}}}}}};
+    file.options.time = 0.75;
+    EXPECT_EQ(file.import().instances.size(), 2u);
+    seeds.emplace_back("moving.glb", file.glb());
+  }
   const test::TemporaryFolder temporary;
   std::mt19937 random(1);
   std::size_t imported = 0, refused = 0;
-  for (int mutant = 0; mutant < 2400; mutant++) {
+  for (int mutant = 0; mutant < 2700; mutant++) {
     auto [name, bytes] = seeds[static_cast<std::size_t>(mutant) % seeds.size()];
     for (std::size_t n = 1 + below(random, 3); n > 0; n--) damage(bytes, random);
     const std::filesystem::path path = temporary.write(name, bytes);
     Notices notices;
     try {
-      const Scene scene = import_scene(path, {}, notices);
+      ImportOptions options;
+      if (name == "moving.glb") options.time = 0.75;
+      const Scene scene = import_scene(path, options, notices);
       for (const Instance &instance : scene.instances) ASSERT_LT(static_cast<std::size_t>(instance.mesh), scene.meshes.size());
       imported++;
     } catch (const Error &error) {
