@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "support/agree.h"
 #include "support/render.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
@@ -223,6 +224,94 @@ TEST(Geometry, MirroredGlassIsGlass) {
     const std::vector<double> a = means(films[0], "beauty", whole(films[0][0]), channel), b = means(films[1], "beauty", whole(films[0][0]), channel);
     EXPECT_LT(moments(a).mean, 0.9) << "it absorbs";
     EXPECT_GT(welch(a, b), 1e-8) << moments(a).mean << " and " << moments(b).mean;
+  }
+}
+
+// A floor of many triangles, in no plane of the axes, under a sun that all but grazes it: none of them shades another, and each pixel has its closed form.
+TEST(Geometry, NothingShadesItselfWhereLightGrazes) {
+  for (const float degrees : {5.0f, 0.5f, 0.05f}) {
+    Scene scene;
+    glm::mat4x3 tilted(1);
+    const float turn = 0.4f, elevation = glm::radians(degrees);
+    tilted[0] = {std::cos(turn), std::sin(turn), 0};
+    tilted[1] = {-std::sin(turn), std::cos(turn), 0};
+    tilted[2] = {0, 0, 1};
+    tilted = glm::mat4x3(glm::mat3(glm::vec3(0.6f, 0, -0.8f), glm::vec3(0, 1, 0), glm::vec3(0.8f, 0, 0.6f)) * glm::mat3(tilted));
+    tilted[3] = {0.3f, -0.2f, 0.1f};
+    const glm::vec3 along = tilted[0], normal = tilted[2];
+    add(scene, grid(40), matt({0.5f, 0.5f, 0.5f}), tilted);
+    Light sun;
+    sun.kind = Light::Kind::directional;
+    sun.direction = glm::normalize(std::cos(elevation) * along - std::sin(elevation) * normal);
+    sun.intensity = {1000, 1000, 1000};
+    scene.lights.push_back(sun);
+    add_camera(scene, tilted[3] + 3.0f * normal, tilted[3], 20);
+    RenderSettings s = picture(16, 16, 1);
+    s.filter = box_filter();
+    const Film film = render(Case(std::move(scene)), s, {0, 4}).film;
+    const double expected = 0.5 / M_PI * 1000 * std::sin(elevation);
+    for (int y = 0; y < 16; y++)
+      for (int x = 0; x < 16; x++) EXPECT_NEAR(mean(film, "beauty", {x, y, x + 1, y + 1}, 0), expected, 1e-3 * expected + 1e-4) << degrees << " degrees, pixel " << x << ", " << y;
+  }
+}
+
+// Rays within the planes of walls: camera rays go on to the sky, a sun that shines down a wall leaves it black and the floor lit to its foot.
+TEST(Geometry, RaysParallelToWalls) {
+  Scene scene;
+  for (const float x : {-0.5f, 0.0f, 0.5f}) add(scene, quad({x, 0, 0}, {0, 0, 1}, {0, 1, 0}), matt({0.9f, 0.9f, 0.9f}));
+  add(scene, quad({0, 0.25f, 0}, {1, 0, 0}, {0, 0, 1}), matt({0.9f, 0.9f, 0.9f}));
+  set_sky(scene, {0.75f, 0.5f, 0.25f});
+  add_flat_camera(scene, {0, 0, 5}, 1);
+  for (const Layout layout : {Layout::binary, Layout::wide8, Layout::wide16}) {
+    Ways ways;
+    ways.layout = layout;
+    const Rendered r = render(Case(scene), picture(16, 16, 2), {0, 16}, ways);
+    EXPECT_EQ(r.counts.nan, 0u);
+    EXPECT_EQ(r.counts.ended[SUN_ENDED_ESCAPED], r.counts.paths);
+    EXPECT_EQ(r.counts.bounce_rays, 0u);
+  }
+  for (const bool floor : {false, true}) {
+    Scene down;
+    add(down, quad({0, 1, 0}, {0, 0, 1}, {0, 1, 0}), matt({0.5f, 0.5f, 0.5f}));
+    add(down, quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}), matt({0.5f, 0.5f, 0.5f}));
+    Light sun;
+    sun.kind = Light::Kind::directional;
+    sun.direction = {0, -1, 0};
+    sun.intensity = {1, 1, 1};
+    down.lights.push_back(sun);
+    if (floor)
+      add_camera(down, {0.5f, 0.6f, 0}, {0.02f, 0, 0}, 1);
+    else
+      add_camera(down, {2, 1, 0}, {0, 1, 0}, 20);
+    RenderSettings s = picture(8, 8, 1);
+    s.filter = box_filter();
+    const Film film = render(Case(std::move(down)), s, {0, 4}).film;
+    for (int y = 0; y < 8; y++)
+      for (int x = 0; x < 8; x++) EXPECT_NEAR(mean(film, "beauty", {x, y, x + 1, y + 1}, 0), floor ? 0.5 / M_PI : 0, 1e-6) << (floor ? "floor" : "wall") << ", pixel " << x << ", " << y;
+  }
+}
+
+// A lamp that stands on the floor, a box of lamps that stands there with a side in the floor's own plane, and one from wall to wall: shadow rays, chance, and both
+// from the lamp's side give one picture.
+TEST(Geometry, LampsThatTouchSurfaces) {
+  for (int kind = 0; kind < 3; kind++) {
+    Scene scene;
+    if (kind == 0) add(scene, quad({0, 0.25f, -0.2f}, {0.4f, 0, 0}, {0, 0.25f, 0}), lamp({3, 4, 5}));
+    if (kind == 1) add(scene, box({-0.2f, 0, -0.4f}, {0.2f, 0.3f, -0.1f}), lamp({3, 4, 5}));
+    if (kind == 2) add(scene, quad({0, 1.4f, -0.75f}, {1, 0, 0}, {0, 0, 0.25f}), lamp({3, 4, 5}));
+    add(scene, box({-1, 0, -1}, {1, 1.6f, 1}, true), matt({0.7f, 0.6f, 0.5f}));
+    add_camera(scene, {0, 0.8f, 0.95f}, {0, 0.6f, 0}, 80);
+    const Case room(std::move(scene));
+    RenderSettings s = picture(16, 16, 2);
+    s.filter = box_filter();
+    const std::vector<Film> path = render_seeds(room, s, 32, 16);
+    EXPECT_GT(moments(means(path, "bounce.1", whole(path[0]), 0)).mean, 0.05) << "the room is lit";
+    for (const char *integrator : {"pure", "bdpt"}) {
+      s.integrator = integrator;
+      const std::vector<Film> other = render_seeds(room, s, s.integrator == "pure" ? 128 : 16, 16);
+      const Agreement a = agreement(path, other, bounces(0, 2), 4, 1e-8);
+      EXPECT_EQ(a.rejected, 0u) << integrator << ", lamp " << kind << ": " << a.what;
+    }
   }
 }
 
