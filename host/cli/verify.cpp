@@ -22,10 +22,12 @@ namespace {
 struct Expected {
   const char *integrator, *film_hash;
 };
-constexpr Expected expected[] = {{"path", "8a59847fca232a7958695e5dcdadb6b4"}, {"pure", "036424246eac7cec0b5f27f98aeb44b4"}, {"hybrid", "284d85983cb5cfe8fd56093010e49436"},
-                                 {"distribution", "952d39ff8537a814c32e00dbdf90c717"},
+constexpr Expected expected[] = {{"path", "14fbd7ad0e26e81467dc426a8b1be863"},
+                                 {"pure", "036424246eac7cec0b5f27f98aeb44b4"},
+                                 {"hybrid", "5e398571de16c2fb8ebcb5b3abda6bc9"},
+                                 {"distribution", "8fdf39d683ff9293cae90dd41f5ed520"},
                                  {"whitted", "6494b1f18656ac1e9649298982accc55"},
-                                 {"bdpt", "94378866ba24ca4966021e916bc3eecd"}};
+                                 {"bdpt", "4a748dd664b0bc857edc222b639ea6b0"}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 

@@ -22,6 +22,7 @@ using kernel::uint;
 
 constexpr double pi = 3.141592653589793;
 constexpr double texture_floor = 0.05;  // of the texture's mean: what the points of a triangle may have missed
+constexpr double lights_floor = 1.0 / 16;  // of all power: what the punctual lights count as at least, each the same
 
 double luminance_of(const float *rgb) { return kernel::luminance(kernel::make_vec3(rgb[0], rgb[1], rgb[2])); }
 
@@ -211,6 +212,10 @@ void flatten_emitters(const Scene &scene, std::size_t max_bytes, FlatScene &flat
   }
   for (double &power : powers)
     if (!(power >= 0) || power > 1e200) power = power > 0 ? 1e200 : 0;
+  // A narrow spot has little power, and yet may be all that lights a place: no path runs into it, so whatever its chance leaves out is noise.
+  double all = 0;
+  for (const double power : powers) all += power;
+  for (std::size_t i = 0; i < flat.lights.size(); i++) powers[first_light + i] = std::max(powers[first_light + i], lights_floor * all / static_cast<double>(flat.lights.size()));
 
   const AliasTable table = make_alias_table(powers);
   for (std::size_t i = 0; i < count; i++) {

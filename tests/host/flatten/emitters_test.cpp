@@ -106,6 +106,20 @@ TEST(Emitters, EveryKindByItsPower) {
   EXPECT_EQ(flat.environment.emitter, 5u);
 }
 
+// Punctual lights whose power is next to nothing still get their share: a sixteenth of the others' among them all.
+TEST(Emitters, NarrowSpotsGetTheirChance) {
+  Scene scene = glowing(1e6f);
+  Light spot;
+  spot.kind = Light::Kind::spot;
+  spot.inner_angle = 0.01f;
+  spot.outer_angle = 0.02f;
+  scene.lights = {spot, spot};
+  const FlatScene flat = flattened(scene);
+  ASSERT_EQ(flat.emitters.size(), 4u);
+  const double share = 1.0 / 32, total = 1 + 2 * share;
+  for (std::size_t i = 0; i < 4; i++) EXPECT_NEAR(flat.emitters[i].pmf, (i < 2 ? 0.5 : share) / total, 1e-5) << i;
+}
+
 TEST(Emitters, TexturesWeighTriangles) {
   // The left half of the picture is black; the square is cut into a left and a right half.
   Primitive halves = square(0);
