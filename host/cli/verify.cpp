@@ -22,12 +22,12 @@ namespace {
 struct Expected {
   const char *integrator, *film_hash;
 };
-constexpr Expected expected[] = {{"path", "14fbd7ad0e26e81467dc426a8b1be863"},
-                                 {"pure", "036424246eac7cec0b5f27f98aeb44b4"},
-                                 {"hybrid", "5e398571de16c2fb8ebcb5b3abda6bc9"},
-                                 {"distribution", "8fdf39d683ff9293cae90dd41f5ed520"},
-                                 {"whitted", "6494b1f18656ac1e9649298982accc55"},
-                                 {"bdpt", "4a748dd664b0bc857edc222b639ea6b0"}};
+constexpr Expected expected[] = {{"path", "a8ee87ddcdd458350ad1642736044e05"},
+                                 {"pure", "940091d3d7f7b708d8fcb2c10c366793"},
+                                 {"hybrid", "e2cf20450aca91ce8412c296d2f930b1"},
+                                 {"distribution", "aeb70a1353f8e1fbba98b258a8716779"},
+                                 {"whitted", "66c4a3ebaecc11efe3080125fd62ea69"},
+                                 {"bdpt", "2e9272f8fdef287e5a2cf366e2010a5b"}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 

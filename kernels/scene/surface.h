@@ -176,13 +176,18 @@ SUN_FN void surface_coordinates(const Scene *scene, Surface *s, const Corners *c
 }
 #endif
 
-// Seen from behind its shading normal a surface would be black or leak: the normal is bent until wo is just above it.
+// What mirrors at a shading normal may look into the surface, and would be black; seen from behind the normal a surface would be black or leak. So the normal is bent
+// until the mirrored direction just leaves the true surface, whose normal is on wo's side [Keller17 A.3].
 SUN_FN vec3 bend_normal(vec3 ns, vec3 wo, vec3 geometric) {
-  real below = dot3(ns, wo);
-  mask bend = below < 1e-3f;
+  real cosine = dot3(ns, wo);
+  vec3 mirrored = sub3(scale3(ns, 2.0f * cosine), wo);
+  real lift = min_real(0.9f * dot3(wo, geometric), (real)(0.01f)) - dot3(mirrored, geometric);
+  mask bend = (lift > 0.0f) | (cosine <= 0.0f);
   if (ANY(bend)) {
-    vec3 bent = normalize3(add3(ns, scale3(wo, 1e-3f - below)));
-    ns = select3(bend, select3(dot3(bent, wo) > 0.0f, bent, geometric), ns);
+    vec3 half_way = add3(wo, normalize3(add3(mirrored, scale3(geometric, max_real(lift, (real)(0.0f))))));
+    real length2 = dot3(half_way, half_way);
+    vec3 bent = scale3(half_way, 1.0f / sqrt(length2 > 1e-6f ? length2 : (real)(1.0f)));
+    ns = select3(bend, select3(length2 > 1e-6f, bent, geometric), ns);
   }
   return ns;
 }

@@ -224,6 +224,23 @@ TEST(Oracle, LampInAMirrorIsExact) {
 }
 
 // The surface of a smooth dielectric over black sends back what Schlick's Fresnel says.
+// A white mirror with a strong normal map shows a white sky whole, however it is looked at: no mirrored direction goes into the surface.
+TEST(Oracle, BumpyMirrorsHaveNoBlackRings) {
+  for (const float degrees : {0.0f, 60.0f, 85.0f}) {
+    const float angle = degrees * pi / 180;
+    Scene scene;
+    Material mirror = metal({1, 1, 1}, 0);
+    mirror.normal_texture = use_picture(scene, bumps(16, 16));
+    mirror.normal_scale = 4;
+    add(scene, quad({0, 0, 0}, {5, 0, 0}, {0, 5, 0}), mirror);
+    set_sky(scene, {0.75f, 0.5f, 0.25f});
+    look_flat(scene, glm::vec3(std::sin(angle), 0, std::cos(angle)) * 6.0f, {0, 0, 0}, 0.3f);
+    const Film film = render(Case(std::move(scene)), sharp(16, 16, 1), {0, 1}).film;
+    for (int y = 0; y < 16; y++)
+      for (int x = 0; x < 16; x++) EXPECT_NEAR(mean(film, "bounce.1", {x, y, x + 1, y + 1}, 0), 0.75, 1e-5) << degrees << " degrees, pixel " << x << ", " << y;
+  }
+}
+
 TEST(Oracle, FresnelOfADielectric) {
   for (const float degrees : {0.0f, 60.0f, 80.0f}) {
     const float angle = degrees * pi / 180;
