@@ -15,7 +15,7 @@ namespace sunstone {
 namespace {
 
 // In units of the picture: where the axes stand, with room for labels around them.
-constexpr double width = 720, left = 84, right = 700, top = 40, bottom = 344, label_y = 388, legend_y = 412, legend_row = 20;
+constexpr double width = 744, left = 84, right = 700, top = 40, bottom = 344, label_y = 388, legend_y = 412, legend_row = 20;
 constexpr std::size_t most_ticks = 8, colours = 6;
 
 // Colours that colour-blind readers tell apart (Okabe and Ito), lighter ones on a dark page; the rest follows the page's ink.
