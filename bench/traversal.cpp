@@ -26,7 +26,7 @@ class Tracer {
   Tracer(const Device &device, const FlatScene &scene, const Tree &tree)
       : layout(name_of(tree.layout)),
         device_(device),
-        program_(device, "stages/trace.cl", {{"SUN_LAYOUT", int(tree.layout)}, {"SUN_SHAPES", scene.shape_count > 0}}),
+        program_(device, "stages/trace.cl", {{"SUN_LAYOUT", int(tree.layout)}, {"SUN_SHAPES", scene.shape_count > 0}, {"SUN_MOTION", 0}}),
         closest_(program_, "trace_closest"),
         any_(program_, "trace_any"),
         nodes_(device, std::span<const std::byte>(tree.nodes), "nodes"),
@@ -45,10 +45,10 @@ class Tracer {
     const auto start = std::chrono::steady_clock::now();
     if (any)
       any_.run(count, rays, passed, blocked, count, want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_, instance_count_,
-                   plane_count_);
+                   plane_count_, 0.0f);
     else
       closest_.run(count, rays, passed, hits, count, want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_, instance_count_,
-                   plane_count_);
+                   plane_count_, 0.0f);
     device_.finish();
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }

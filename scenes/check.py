@@ -79,6 +79,16 @@ def check(path):
                 for k in (a, b, c) if "NORMAL" in attributes else ():
                     assert sum(x * y for x, y in zip(n, attributes["NORMAL"][k])) > 0, f"{place}: triangle {a} {b} {c} against its normals"
             triangles += len(indices) // 3
+    for a, animation in enumerate(document.get("animations", [])):
+        for c, channel in enumerate(animation["channels"]):
+            sampler = animation["samplers"][channel["sampler"]]
+            times, values = read(document, buffers, sampler["input"]), read(document, buffers, sampler["output"])
+            used |= {sampler["input"], sampler["output"]}
+            place = f"animations[{a}].channels[{c}]"
+            assert "min" in document["accessors"][sampler["input"]] and times == sorted(set(times)), f"{place}: times"
+            assert len(values) == len(times) and channel["target"]["node"] < len(document["nodes"]), f"{place}: values"
+            for value in values if channel["target"]["path"] == "rotation" else []:
+                assert abs(sum(x * x for x in value) - 1) < 1e-5, f"{place}: rotation's length"
     assert used == set(range(len(document.get("accessors", [])))), "accessors that nothing uses"
     for i, node in enumerate(document["nodes"]):
         assert node.get("mesh", 0) < len(document.get("meshes", [0])) and node.get("camera", 0) < len(document.get("cameras", [0])), f"nodes[{i}]"

@@ -165,6 +165,18 @@ class Gltf:
         rotation = rotation or look_rotation(position, target)
         return self.node(name, camera=camera, translation=list(position), rotation=list(rotation))
 
+    def animation(self, name, moves):
+        """moves: [(node, [(seconds, translation, rotation)])]. From key to key in straight lines, and turns along the shortest arc."""
+        channels, samplers = [], []
+        for node, keys in moves:
+            input = self.accessor(self.view(struct.pack(f"<{len(keys)}f", *(key[0] for key in keys))), FLOAT, [(key[0],) for key in keys], bounds=True)
+            for path, column in (("translation", 1), ("rotation", 2)):
+                rows = [key[column] for key in keys]
+                output = self.accessor(self.view(struct.pack(f"<{len(rows) * len(rows[0])}f", *flat(rows))), FLOAT, rows)
+                samplers.append({"input": input, "output": output, "interpolation": "LINEAR"})
+                channels.append({"sampler": len(samplers) - 1, "target": {"node": node, "path": path}})
+        return self.add("animations", {"name": name, "channels": channels, "samplers": samplers})
+
     def files(self, path):
         """{path: bytes} of a .glb, or of a .gltf and its .bin."""
         path = pathlib.Path(path)

@@ -42,6 +42,10 @@ void tell(const Options &o, Notices &notices) {
   std::size_t emissive = 0;
   for (const Material &material : scene.materials) emissive += material.emission.x + material.emission.y + material.emission.z > 0;
   const auto shapes = [&](Shape::Kind kind) { return std::ranges::count(scene.shapes, kind, &Shape::kind); };
+  // While the shutter is open.
+  const auto moving = [](const auto &things) { return std::ranges::count_if(things, [](const auto &thing) { return !thing.keys.empty(); }); };
+  const auto moving_instances = moving(scene.instances), moving_shapes = moving(scene.shapes), moving_lights = moving(scene.lights), moving_cameras = moving(scene.cameras);
+  const auto deforming = std::ranges::count_if(scene.meshes, &Mesh::deforms);
   if (o.json) {
     nlohmann::ordered_json j = {{"scene", o.scene},
                                 {"triangles", unique},
@@ -56,6 +60,8 @@ void tell(const Options &o, Notices &notices) {
                                 {"lights", scene.lights.size()},
                                 {"extensions", scene.extensions},
                                 {"memory", {{"geometry", memory.geometry}, {"tree", memory.tree}, {"textures", memory.textures}, {"other", memory.other}, {"total", memory.total()}}}};
+    if (scene.motion_steps)
+      j["motion"] = {{"steps", scene.motion_steps}, {"instances", moving_instances}, {"meshes", deforming}, {"shapes", moving_shapes}, {"lights", moving_lights}, {"cameras", moving_cameras}};
     for (const Camera &camera : scene.cameras) j["cameras"].push_back(camera.name);
     if (!bounds.empty()) j["bounds"] = {{bounds.lower.x, bounds.lower.y, bounds.lower.z}, {bounds.upper.x, bounds.upper.y, bounds.upper.z}};
     for (const Notice &notice : notices.all()) j["notices"].push_back({{"kind", notice.kind == Notice::Kind::warning ? "warning" : "note"}, {"place", notice.place}, {"text", notice.text}});
@@ -72,6 +78,9 @@ void tell(const Options &o, Notices &notices) {
   fmt::print("  lights      {}, cameras {}\n", scene.lights.size(), scene.cameras.size());
   for (std::size_t i = 0; i < scene.cameras.size(); i++)
     fmt::print("    camera {}  {} ({})\n", i, printable(scene.cameras[i].name), scene.cameras[i].orthographic ? "orthographic" : "perspective");
+  if (scene.motion_steps)
+    fmt::print("  motion      {} steps: {} instances and {} shapes move, {} meshes deform, {} lights and {} cameras move\n", scene.motion_steps, moving_instances, moving_shapes, deforming,
+               moving_lights, moving_cameras);
   if (!bounds.empty())
     fmt::print("  bounds      ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g}) metres\n", bounds.lower.x, bounds.lower.y, bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z);
   std::string extensions;

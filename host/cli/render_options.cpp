@@ -269,6 +269,7 @@ RenderSettings render_settings(const RenderOptions &o) {
       throw UsageError("--crop " + printable(o.crop), "is not a window of the " + o.size + " picture");
   }
   s.time = o.import.time;
+  s.shutter = o.import.shutter;
   s.integrator = o.integrator;
   s.max_depth = o.max_depth;
   read_integrator_flags(o, s);

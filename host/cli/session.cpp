@@ -59,6 +59,7 @@ std::shared_ptr<const Scene> scene_at_rest(const Content &content, const RenderO
   Notices said;  // all of it is said of the scene itself
   ImportOptions at_rest = o.import;
   at_rest.time.reset();
+  at_rest.shutter = 0;
   Scene still = content.import_scene(o.scene, at_rest, said);
   still.images.clear();
   return std::make_shared<const Scene>(std::move(still));
@@ -109,12 +110,14 @@ LoadedScene load_scene(const RenderOptions &o, const RenderSettings &settings, L
   flatten.max_page_bytes = info.max_allocation;
   loaded.flat = content.flatten(loaded.scene, flatten, notices);
   loaded.camera = content.flatten_camera(camera, settings.width, settings.height);
+  loaded.flat.camera_keys = flatten_camera_keys(camera, settings.width, settings.height, content.flatten_camera);
   loaded.build_seconds = now() - begun - loaded.import_seconds;
   const FlatScene &flat = loaded.flat;
   const std::size_t meshes = flat.instances.size() - flat.shape_count;
   loaded.line = fmt::format("{}: {} triangles, {} instance{}{}, {} material{}, {} texture{}, {} emitter{}", printable(o.scene), flat.triangles.size() - flat.shape_count, meshes,
                             meshes == 1 ? "" : "s", flat.shape_count ? fmt::format(", {} shape{}", flat.shape_count, flat.shape_count == 1 ? "" : "s") : "", flat.materials.size(), flat.materials.size() == 1 ? "" : "s", flat.textures.size(),
                             flat.textures.size() == 1 ? "" : "s", flat.emitters.size(), flat.emitters.size() == 1 ? "" : "s");
+  if (flat.motion_steps) loaded.line += fmt::format(", moving in {} step{}", flat.motion_steps, flat.motion_steps == 1 ? "" : "s");
   return loaded;
 }
 

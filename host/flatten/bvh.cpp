@@ -225,7 +225,7 @@ TreePart build_part(RTCDevice embree, std::vector<RTCBuildPrimitive> &boxes, uns
   return part;
 }
 
-// Of triangles that are whole, and of the fragments of those that are not.
+// Of triangles that are whole, and of the fragments of those that are not. What deforms is within its box at all keys, and so between them.
 std::vector<RTCBuildPrimitive> item_boxes(const FlatScene &scene, const MeshRange &mesh) {
   std::vector<RTCBuildPrimitive> boxes;
   boxes.reserve(mesh.triangle_count + mesh.fragment_count);
@@ -246,12 +246,16 @@ std::vector<RTCBuildPrimitive> item_boxes(const FlatScene &scene, const MeshRang
     if (box.primID & SUN_ID_FRAGMENT) return;
     const kernel::Triangle &triangle = scene.triangles[box.primID];
     for (int axis = 0; axis < 3; axis++) {
-      const float a = scene.vertices[triangle.vertex[0]].position[axis], b = scene.vertices[triangle.vertex[1]].position[axis],
-                  c = scene.vertices[triangle.vertex[2]].position[axis];
-      if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c))
-        throw Error{"tree", "triangle " + std::to_string(box.primID) + " has a corner that is not finite"};
-      (&box.lower_x)[axis] = std::min({a, b, c});
-      (&box.upper_x)[axis] = std::max({a, b, c});
+      float lower = INFINITY, upper = -INFINITY;
+      for (std::size_t key = 0; key < mesh_keys(scene, mesh); key++)
+        for (const uint vertex : triangle.vertex) {
+          const float x = scene.vertices[vertex + key * scene.deforming].position[axis];
+          if (!std::isfinite(x)) throw Error{"tree", "triangle " + std::to_string(box.primID) + " has a corner that is not finite"};
+          lower = std::min(lower, x);
+          upper = std::max(upper, x);
+        }
+      (&box.lower_x)[axis] = lower;
+      (&box.upper_x)[axis] = upper;
     }
   });
   return boxes;
@@ -344,7 +348,7 @@ Tree build_tree(const FlatScene &scene, Layout layout, const std::function<void(
     std::vector<RTCBuildPrimitive> boxes = item_boxes(scene, mesh);
     mesh_bounds[i] = bounds_of(boxes);
     parts[i] =
-        build_part(embree.get(), boxes, leaf_triangles(layout), layout, [&](const BinaryTree &tree) { return lay_out_mesh(tree, layout, scene); });
+        build_part(embree.get(), boxes, leaf_triangles(layout), layout, [&](const BinaryTree &tree) { return lay_out_mesh(tree, layout, scene, mesh_keys(scene, mesh)); });
     report(mesh.triangle_count);
   });
   check_identity_boxes(scene, mesh_bounds);

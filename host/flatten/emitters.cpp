@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "flatten/alias_table.h"
@@ -94,13 +95,30 @@ double shape_area(const kernel::Instance &instance) {
 }
 
 // Area in world space; nothing where it is not finite.
-double world_area(const FlatScene &flat, const kernel::Instance &instance, const kernel::Triangle &triangle) {
+double area_at(const FlatScene &flat, const kernel::Instance &instance, const kernel::Triangle &triangle, std::size_t key) {
   if (instance.flags & SUN_INSTANCE_SHAPE) return shape_area(instance);
+  const std::size_t first = instance.flags & SUN_INSTANCE_DEFORMING ? key * flat.deforming : 0;
   glm::vec3 corner[3];
-  for (std::size_t k = 0; k < 3; k++) corner[k] = transform_point(instance, flat.vertices[triangle.vertex[k]].position);
+  for (std::size_t k = 0; k < 3; k++) corner[k] = transform_point(instance, flat.vertices[first + triangle.vertex[k]].position);
   const glm::dvec3 cross = triangle_cross(corner[0], corner[1], corner[2]);
   const double area = 0.5 * std::sqrt((cross.x * cross.x + cross.y * cross.y) + cross.z * cross.z);
   return std::isfinite(area) ? area : 0;
+}
+
+// Of what moves: as at its keys on the mean.
+double world_area(const FlatScene &flat, const kernel::Instance &instance, const kernel::Triangle &triangle) {
+  if (!(instance.flags & (SUN_INSTANCE_MOVING | SUN_INSTANCE_DEFORMING))) return area_at(flat, instance, triangle, 0);
+  const std::size_t keys = flat.motion_steps + 1;
+  double sum = 0;
+  for (std::size_t key = 0; key < keys; key++) {
+    kernel::Instance then = instance;
+    if (instance.flags & SUN_INSTANCE_MOVING) {
+      const kernel::InstanceKey &place = flat.instance_keys[(instance.flags >> SUN_INSTANCE_MOTION_SHIFT) * keys + key];
+      std::copy(std::begin(place.to_world), std::end(place.to_world), then.to_world);
+    }
+    sum += area_at(flat, then, triangle, key);
+  }
+  return sum / static_cast<double>(keys);
 }
 
 float cosine_of(float angle) {
@@ -125,8 +143,9 @@ kernel::Light light_of(const Light &light) {
 
 double light_power(const kernel::Light &light, double disk_area) {
   const double intensity = luminance_of(light.intensity);
-  if (light.kind == SUN_LIGHT_POINT) return 4 * pi * intensity;
-  if (light.kind == SUN_LIGHT_DIRECTIONAL) return disk_area * intensity;
+  const uint kind = light.kind & SUN_LIGHT_KIND;
+  if (kind == SUN_LIGHT_POINT) return 4 * pi * intensity;
+  if (kind == SUN_LIGHT_DIRECTIONAL) return disk_area * intensity;
   // The square of a ramp from 1 at the inner to 0 at the outer cosine has the integral of a third of its width.
   const double inner = light.cos_inner, outer = light.cos_outer;
   return 2 * pi * intensity * ((1 - inner) + std::max(inner - outer, 0.0) / 3);
@@ -154,9 +173,24 @@ void flatten_emitters(const Scene &scene, std::size_t max_bytes, FlatScene &flat
     count += here;
     check();
   }
+  std::vector<std::pair<std::size_t, const Light *>> moving;
   for (const Light &light : scene.lights) {
-    const kernel::Light record = light_of(light);
-    if (record.intensity[0] > 0 || record.intensity[1] > 0 || record.intensity[2] > 0) flat.lights.push_back(record);
+    kernel::Light record = light_of(light);
+    if (!(record.intensity[0] > 0 || record.intensity[1] > 0 || record.intensity[2] > 0)) continue;
+    if (!light.keys.empty()) moving.emplace_back(flat.lights.size(), &light);
+    flat.lights.push_back(record);
+  }
+  for (const auto &[number, light] : moving) {
+    const std::size_t at = flat.lights.size() + flat.light_keys.size();
+    if (at + flat.motion_steps >= SUN_NONE >> SUN_LIGHT_KEYS_SHIFT) throw Error{"flatten", "more lights move than 2^24 keys are for"};
+    flat.light_keys.push_back(flat.lights[number]);
+    for (const LightKey &key : light->keys) {
+      Light then = *light;
+      then.position = key.position;
+      then.direction = key.direction;
+      flat.light_keys.push_back(light_of(then));
+    }
+    flat.lights[number].kind |= static_cast<uint>(at) << SUN_LIGHT_KEYS_SHIFT;
   }
   const std::size_t first_light = count;
   count += flat.lights.size();

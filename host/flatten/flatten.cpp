@@ -52,6 +52,12 @@ Hash hash_of(const FlatScene &flat) {
   hasher.bytes(&flat.environment, sizeof flat.environment);
   add(flat.environment_texels);
   add(flat.environment_cdf);
+  if (flat.motion_steps) {
+    hasher.value(flat.motion_steps);
+    hasher.value(flat.deforming);
+    add(flat.instance_keys);
+    add(flat.light_keys);
+  }
   for (int c = 0; c < 3; c++) {
     hasher.value(flat.bounds.lower[c]);
     hasher.value(flat.bounds.upper[c]);
@@ -64,36 +70,43 @@ Hash hash_of(const FlatScene &flat) {
 MemoryEstimate estimate_memory(const Scene &scene, Layout layout) {
   MemoryEstimate estimate;
   const std::vector<MeshUse> uses = mesh_uses(scene);
-  std::size_t triangles = 0, vertices = 0, instances = 1;
+  const std::size_t keys = scene.motion_steps + 1;
+  std::size_t triangles = 0, vertices = 0, instances = 1, moving = 0, leaf_triangles = 0;
   bool extras = false;
   for (std::size_t m = 0; m < uses.size(); m++) {
     if (!uses[m].instances) continue;
     const std::size_t copies = uses[m].baked ? uses[m].instances : 1;
     if (!uses[m].baked) instances += uses[m].instances;
+    const std::size_t keys_here = scene.meshes[m].deforms() ? keys : 1;
     for (const Primitive &primitive : scene.meshes[m].primitives) {
       const bool made = needs_tangents(scene, primitive);
       extras = extras || made || !primitive.colors.empty() || !primitive.uv[1].empty();
       triangles += copies * (primitive.indices.size() / 3);
+      leaf_triangles += copies * (primitive.indices.size() / 3) * keys_here;
       // Corners part where normals are flat or tangents are made; else there are no more vertices than the primitive has.
       const bool parts = primitive.normals.empty() || (made && primitive.tangents.empty());
-      vertices += copies * (parts ? primitive.indices.size() : std::min(primitive.positions.size(), primitive.indices.size()));
+      vertices += copies * keys_here * (parts ? primitive.indices.size() : std::min(primitive.positions.size(), primitive.indices.size()));
     }
   }
   estimate.geometry = vertices * (sizeof(kernel::Vertex) + (extras ? sizeof(kernel::VertexExtra) : 0)) +
                       triangles * (sizeof(kernel::Triangle) + 3 * sizeof(kernel::uint)) + triangles / 2 * sizeof(kernel::Fragment) +
                       instances * (sizeof(kernel::Instance) + 3 * sizeof(kernel::uint));
   estimate.geometry += scene.shapes.size() * (sizeof(kernel::Triangle) + sizeof(kernel::Vertex) + sizeof(kernel::Instance) + 6 * sizeof(kernel::uint));
+  for (const Instance &instance : scene.instances) moving += !instance.keys.empty();
+  for (const Shape &shape : scene.shapes) moving += !shape.keys.empty();
+  estimate.geometry += moving * keys * sizeof(kernel::InstanceKey);
   // Leaves are about half full; a node of W children leads to about W / 2 others.
   const std::size_t items = triangles + triangles / 3 + instances;  // pieces of long triangles with them
+  const std::size_t more = leaf_triangles - triangles;              // leaves of what deforms stand there once for each key
   switch (layout) {
     case Layout::binary:
-      estimate.tree = items * sizeof(kernel::LeafTriangle) + items * sizeof(kernel::BinaryNode);
+      estimate.tree = (items + more) * sizeof(kernel::LeafTriangle) + items * sizeof(kernel::BinaryNode);
       break;
     case Layout::wide8:
-      estimate.tree = items / 4 * (sizeof(kernel::WidePack) + sizeof(kernel::Wide8Node) / 4);
+      estimate.tree = items / 4 * (sizeof(kernel::WidePack) + sizeof(kernel::Wide8Node) / 4) + more / 4 * sizeof(kernel::WidePack);
       break;
     case Layout::wide16:
-      estimate.tree = items / 4 * (sizeof(kernel::WidePack) + sizeof(kernel::Wide16Node) / 8);
+      estimate.tree = items / 4 * (sizeof(kernel::WidePack) + sizeof(kernel::Wide16Node) / 8) + more / 4 * sizeof(kernel::WidePack);
       break;
   }
   estimate.textures = texel_bytes(scene);
@@ -120,6 +133,7 @@ FlatScene flatten(const Scene &scene, const FlattenOptions &options, Notices &no
     if (options.progress) options.progress(what, fraction);
   };
   FlatScene flat;
+  flat.motion_steps = scene.motion_steps;
   flat.tables = make_tables();
 
   report("textures", 0);

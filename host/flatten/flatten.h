@@ -13,6 +13,7 @@
 #include "shared/frame.h"
 #include "shared/geometry.h"
 #include "shared/material.h"
+#include "shared/motion.h"
 #include "shared/tables.h"
 #include "shared/texture.h"
 
@@ -38,6 +39,7 @@ struct Tree {
 struct MeshRange {
   kernel::uint first_triangle = 0, triangle_count = 0;
   kernel::uint first_fragment = 0, fragment_count = 0;
+  bool deforms = false;  // its vertices have keys
 };
 
 struct FlatScene {
@@ -53,12 +55,17 @@ struct FlatScene {
   std::vector<kernel::uint> instance_object;        // the number of the scene's instance, from 1; 0 for the one that holds the baked meshes
   std::vector<kernel::Instance> instances;          // of meshes, of shapes with bounds, of infinite planes, in this order
   std::size_t shape_count = 0, plane_count = 0;     // shapes among them, planes among these
+  unsigned motion_steps = 0;                        // keys less one (shared/motion.h); 0: all is still
+  kernel::uint deforming = 0;                       // vertices that have keys: those of each key stand so far behind those of the one before
+  std::vector<kernel::InstanceKey> instance_keys;   // motion_steps + 1 of each instance that moves
   std::vector<kernel::Material> materials;
   std::vector<kernel::TextureRef> texture_refs;
   std::vector<kernel::Texture> textures;
   std::array<std::vector<kernel::uint>, SUN_TEXTURE_PAGES> texel_pages;
   std::vector<kernel::Emitter> emitters;
   std::vector<kernel::Light> lights;
+  std::vector<kernel::Light> light_keys;            // motion_steps + 1 of each light that moves; they stand behind the lights
+  std::vector<kernel::Camera> camera_keys;          // of the picture's camera, where that moves: no part of the scene, flatten leaves it empty
   kernel::Environment environment{};
   std::vector<float> environment_texels;            // RGB, rows from the top; strength multiplied in
   std::vector<float> environment_cdf;               // (height + 1) marginal, then height rows of (width + 1)
@@ -66,6 +73,8 @@ struct FlatScene {
   Bounds bounds;                                    // of all but infinite planes
   Tree tree;
   Hash scene_hash;
+  // Does anything move (or only the camera, or nothing), or do vertices deform? The switch SUN_MOTION.
+  int motion() const { return motion_steps == 0 ? 0 : deforming ? 2 : 1; }
   bool has_passable = false, has_textures = false, has_specular = false;  // textures, or colours of vertices
 };
 
@@ -84,6 +93,9 @@ MemoryEstimate estimate_memory(const Scene &scene, Layout layout);
 
 // Throws Error where the scene has too many triangles, emitters or texels for one device.
 FlatScene flatten(const Scene &scene, const FlattenOptions &options, Notices &notices);
+
+// The instances and, where something moves, their keys behind them: what the kernels' buffer of instances holds.
+std::vector<kernel::Instance> instances_with_keys(const FlatScene &scene);
 
 // The tree alone, over flattened geometry: in flatten/bvh.h. Camera and film constants of a picture: in flatten/camera.h.
 

@@ -154,7 +154,7 @@ double scale_of(std::span<const float> priorities, std::uint64_t most) {
 }
 
 std::vector<Fragment> fragments_of(const FlatScene &scene, const MeshRange &mesh, const SplitOptions &options) {
-  if (mesh.triangle_count < std::max(1u, options.least_triangles)) return {};
+  if (mesh.deforms || mesh.triangle_count < std::max(1u, options.least_triangles)) return {};
   Box bounds;
   for (uint i = 0; i < mesh.triangle_count; i++)
     for (const Point &p : corners_of(scene, mesh.first_triangle + i)) {

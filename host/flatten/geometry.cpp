@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 #include "flatten/materials.h"
@@ -75,15 +76,51 @@ bool extras_wanted(const Scene &scene, const FlatScene &flat, const std::vector<
   return false;
 }
 
-void write_vertices(const Part &part, FlatScene &flat, bool extras) {
+// Where a tangent of our making goes as its triangle deforms: it keeps its place between the triangle's edges, and its part along the normal.
+class TangentsAlong {
+ public:
+  TangentsAlong(const Part &part, const PrimitiveKey &key) : part_(part), key_(key), triangle_(part.welded->source.size(), 0) {
+    for (std::size_t i = part.welded->indices.size(); i-- > 0;) triangle_[part.welded->indices[i]] = i / 3;
+  }
+  glm::dvec3 at(std::size_t vertex) const {
+    const auto edges = [&](const std::vector<glm::vec3> &positions, glm::dvec3 &a, glm::dvec3 &b) {
+      glm::dvec3 corner[3];
+      for (std::size_t k = 0; k < 3; k++) corner[k] = glm::dvec3(positions[part_.welded->source[part_.welded->indices[3 * triangle_[vertex] + k]]]);
+      a = corner[1] - corner[0];
+      b = corner[2] - corner[0];
+      return glm::cross(a, b);
+    };
+    glm::dvec3 a, b, to_a, to_b;
+    const glm::dvec3 n = edges(part_.primitive->positions, a, b), to_n = edges(key_.positions, to_a, to_b), t(part_.welded->tangents[vertex]);
+    const double size = glm::dot(n, n);
+    if (!(size > 0)) return t;
+    return to_a * (glm::dot(glm::cross(t, b), n) / size) + to_b * (glm::dot(glm::cross(a, t), n) / size) + to_n * (glm::dot(t, n) / size);
+  }
+
+ private:
+  const Part &part_;
+  const PrimitiveKey &key_;
+  std::vector<std::size_t> triangle_;
+};
+
+// Those of the shutter's key `key`, so many vertices behind those of key 0.
+void write_vertices(const Part &part, FlatScene &flat, bool extras, std::size_t key) {
   const Primitive &primitive = *part.primitive;
   const WeldedPrimitive &welded = *part.welded;
   const Placement &p = part.placement;
+  const PrimitiveKey *const later = key && !primitive.keys.empty() ? &primitive.keys[key - 1] : nullptr;
+  const std::vector<glm::vec3> &positions = later ? later->positions : primitive.positions;
+  const bool flat_faces = !primitive.keys.empty() && primitive.normals.empty();  // which turn as they deform: the kernels take the triangle's own normal
+  const bool given_tangents = !primitive.tangents.empty();
+  std::optional<TangentsAlong> along;
+  if (later && extras && !given_tangents && !welded.tangents.empty()) along.emplace(part, *later);
+  const std::size_t first = part.first_vertex + key * flat.deforming;
   for (std::size_t i = 0; i < welded.source.size(); i++) {
     const std::uint32_t source = welded.source[i];
-    const glm::vec3 &local = primitive.positions[source];
+    const glm::vec3 &local = positions[source];
     const glm::vec3 position = apply(p.m, local.x, local.y, local.z);
-    const glm::vec3 normal = unit_vector(apply_linear(p.normal, welded.normals[i]));
+    const glm::vec3 own = later && !flat_faces ? later->normals[source] : welded.normals[i];
+    const glm::vec3 normal = flat_faces ? glm::vec3(0) : unit_vector(apply_linear(p.normal, own));
     kernel::Vertex vertex{};
     for (int c = 0; c < 3; c++) {
       vertex.position[c] = position[c];
@@ -93,14 +130,15 @@ void write_vertices(const Part &part, FlatScene &flat, bool extras) {
       vertex.u = primitive.uv[0][source].x;
       vertex.v = primitive.uv[0][source].y;
     }
-    flat.vertices[part.first_vertex + i] = vertex;
+    flat.vertices[first + i] = vertex;
     if (!extras) continue;
     kernel::VertexExtra extra{};
     if (!welded.tangents.empty() && welded.tangents[i].w != 0) {
       const glm::vec4 &tangent = welded.tangents[i];
       double linear[9];
       for (int k = 0; k < 9; k++) linear[k] = p.m[4 * (k / 3) + k % 3];
-      const glm::vec3 world = unit_vector(apply_linear(linear, glm::vec3(tangent)));
+      const glm::vec3 moved = along ? unit_vector(along->at(i)) : later ? glm::vec3(later->tangents[source]) : glm::vec3(tangent);
+      const glm::vec3 world = unit_vector(apply_linear(linear, moved));
       for (int c = 0; c < 3; c++) extra.tangent[c] = world[c];
       extra.tangent[3] = p.mirrored() ? -tangent.w : tangent.w;  // a mirror turns the cross product over
     }
@@ -109,7 +147,7 @@ void write_vertices(const Part &part, FlatScene &flat, bool extras) {
       extra.uv1[0] = primitive.uv[1][source].x;
       extra.uv1[1] = primitive.uv[1][source].y;
     }
-    flat.vertex_extras[part.first_vertex + i] = extra;
+    flat.vertex_extras[first + i] = extra;
   }
 }
 
@@ -122,7 +160,7 @@ bool kept(const FlatScene &flat, const Part &part, std::size_t triangle) {
     for (int c = 0; c < 3; c++)
       if (!(std::fabs(corner[k][c]) <= farthest)) return false;
   }
-  return triangle_cross(corner[0], corner[1], corner[2]) != glm::dvec3(0);
+  return !part.primitive->keys.empty() || triangle_cross(corner[0], corner[1], corner[2]) != glm::dvec3(0);
 }
 
 // Is what has this material passed by rays that see it from behind?
@@ -153,21 +191,27 @@ void write_triangles(const Part &part, FlatScene &flat) {
   }
 }
 
-// The box of a range's vertices that triangles use.
+const float *position_at(const FlatScene &flat, const MeshRange &range, uint vertex, std::size_t key) {
+  return flat.vertices[vertex + (range.deforms ? key * flat.deforming : 0)].position;
+}
+
+// The box of a range's vertices that triangles use, at all keys.
 Bounds range_bounds(const FlatScene &flat, const MeshRange &range) {
   Bounds box;
   for (std::size_t t = range.first_triangle; t < std::size_t(range.first_triangle) + range.triangle_count; t++)
     for (uint v : flat.triangles[t].vertex)
-      for (int c = 0; c < 3; c++) {
-        box.lower[c] = std::min(box.lower[c], flat.vertices[v].position[c]);
-        box.upper[c] = std::max(box.upper[c], flat.vertices[v].position[c]);
-      }
+      for (std::size_t key = 0; key <= (range.deforms ? flat.motion_steps : 0); key++)
+        for (int c = 0; c < 3; c++) {
+          const float x = position_at(flat, range, v, key)[c];
+          box.lower[c] = std::min(box.lower[c], x);
+          box.upper[c] = std::max(box.upper[c], x);
+        }
   return box;
 }
 
 // A box that contains every transformed vertex, and hits found in mesh space: these are off by rounding errors of the order of the terms that were
-// added.
-Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &local, const float *m, bool exact) {
+// added. Of vertices that deform: at the keys from `first` to `last`.
+Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &local, const float *m, bool exact, std::size_t first, std::size_t last) {
   Bounds box;
   const auto include = [&](const glm::vec3 &point) {
     for (int c = 0; c < 3; c++) {
@@ -177,10 +221,11 @@ Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &lo
   };
   if (exact) {
     for (std::size_t t = range.first_triangle; t < std::size_t(range.first_triangle) + range.triangle_count; t++)
-      for (uint v : flat.triangles[t].vertex) {
-        const float *p = flat.vertices[v].position;
-        include(apply(m, p[0], p[1], p[2]));
-      }
+      for (uint v : flat.triangles[t].vertex)
+        for (std::size_t key = first; key <= (range.deforms ? last : first); key++) {
+          const float *p = position_at(flat, range, v, key);
+          include(apply(m, p[0], p[1], p[2]));
+        }
   } else {
     // Rounding is monotone, so the corners' transforms bound every vertex's.
     for (int corner = 0; corner < 8; corner++)
@@ -195,6 +240,38 @@ Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &lo
     box.upper[r] += pad;
   }
   return box;
+}
+
+void include_box(Bounds &box, const Bounds &other) {
+  for (int c = 0; c < 3; c++) {
+    box.lower[c] = std::min(box.lower[c], other.lower[c]);
+    box.upper[c] = std::max(box.upper[c], other.upper[c]);
+  }
+}
+
+// Keys of one transform: none where it does not move.
+std::vector<kernel::InstanceKey> keys_of(const glm::mat4x3 &transform, const std::vector<glm::mat4x3> &later) {
+  std::vector<kernel::InstanceKey> keys;
+  if (later.empty()) return keys;
+  const auto add = [&](const glm::mat4x3 &m) {
+    kernel::InstanceKey key;
+    const Placement p = placement_of(m);
+    std::copy(std::begin(p.m), std::end(p.m), key.to_world);
+    keys.push_back(key);
+  };
+  add(transform);
+  for (const glm::mat4x3 &m : later) add(m);
+  return keys;
+}
+
+// Enters the keys of an instance that moves, and marks it. Its to_object is not used.
+void take_keys(const std::vector<kernel::InstanceKey> &keys, kernel::Instance &instance, FlatScene &flat) {
+  if (keys.empty()) return;
+  const std::size_t number = flat.instance_keys.size() / keys.size();
+  if (number >= SUN_MOST_MOVING_INSTANCES) throw Error{"flatten", "more than 2^20 instances move", "a --shutter of 0 shows them still"};
+  instance.flags |= SUN_INSTANCE_MOVING | static_cast<uint>(number) << SUN_INSTANCE_MOTION_SHIFT;
+  std::fill(std::begin(instance.to_object), std::end(instance.to_object), 0.0f);
+  flat.instance_keys.insert(flat.instance_keys.end(), keys.begin(), keys.end());
 }
 
 void invert(const Placement &p, float *inverse) {
@@ -227,24 +304,26 @@ void number_emitters(FlatScene &flat) {
 // The instances of the mesh ranges: the identity for what was baked, then those of the meshes kept in their own space, in the scene's order.
 void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const std::vector<std::size_t> &range_of_mesh, bool any_baked,
                      FlatScene &flat, Notices &notices) {
-  const auto add = [&](const Placement &p, std::size_t range, std::size_t object) {
+  std::vector<std::vector<kernel::InstanceKey>> keys;
+  const auto add = [&](const Placement &p, std::size_t range, std::size_t object, std::vector<kernel::InstanceKey> own_keys) {
     kernel::Instance instance{};
     std::copy(std::begin(p.m), std::end(p.m), instance.to_world);
     invert(p, instance.to_object);
-    instance.flags = p.mirrored() ? SUN_INSTANCE_MIRRORED : 0;
+    instance.flags = (p.mirrored() ? SUN_INSTANCE_MIRRORED : 0) | (flat.meshes[range].deforms ? SUN_INSTANCE_DEFORMING : 0);
+    keys.push_back(std::move(own_keys));
     instance.first_emitter = SUN_NONE;
     flat.instances.push_back(instance);
     flat.instance_mesh.push_back(static_cast<uint>(range));
     flat.instance_object.push_back(static_cast<uint>(object));
   };
   if (any_baked && flat.meshes[0].triangle_count) {
-    add({}, 0, 0);
+    add({}, 0, 0, {});
     flat.instances[0].flags = SUN_INSTANCE_IDENTITY;
   }
   for (std::size_t i = 0; i < scene.instances.size(); i++) {
     const auto mesh = static_cast<std::size_t>(scene.instances[i].mesh);
     if (!uses[mesh].baked && flat.meshes[range_of_mesh[mesh]].triangle_count)
-      add(placement_of(scene.instances[i].transform), range_of_mesh[mesh], i + 1);
+      add(placement_of(scene.instances[i].transform), range_of_mesh[mesh], i + 1, keys_of(scene.instances[i].transform, scene.instances[i].keys));
   }
 
   std::vector<Bounds> local(flat.meshes.size()), boxes(flat.instances.size());
@@ -255,19 +334,25 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
     const uint mesh = flat.instance_mesh[i];
     const MeshRange &range = flat.meshes[mesh];
     const bool identity = flat.instances[i].flags & SUN_INSTANCE_IDENTITY;
-    const bool exact = copies[mesh] * (3 * std::size_t(range.triangle_count)) <= exact_boxes;
-    boxes[i] = identity ? local[mesh] : world_box(flat, range, local[mesh], flat.instances[i].to_world, exact);
+    const std::size_t times = (range.deforms ? 3 : 1) * std::max<std::size_t>(1, keys[i].size());
+    const bool exact = copies[mesh] * (3 * std::size_t(range.triangle_count)) * times <= exact_boxes;
+    if (identity) boxes[i] = local[mesh];
+    // Within a step places are a mean of what the matrix of either key makes of the vertex of either key.
+    for (std::size_t key = 0; key < keys[i].size(); key++)
+      include_box(boxes[i], world_box(flat, range, local[mesh], keys[i][key].to_world, exact, key ? key - 1 : 0, std::min<std::size_t>(key + 1, flat.motion_steps)));
+    if (!identity && keys[i].empty()) boxes[i] = world_box(flat, range, local[mesh], flat.instances[i].to_world, exact, 0, range.deforms ? flat.motion_steps : 0);
   });
 
   std::size_t to = 0, far = 0;
   for (std::size_t i = 0; i < boxes.size(); i++) {
-    const bool usable = in_range(boxes[i]) && std::all_of(std::begin(flat.instances[i].to_object), std::end(flat.instances[i].to_object),
-                                                          [](float x) { return std::isfinite(x); });
+    const bool usable = in_range(boxes[i]) && (!keys[i].empty() || std::all_of(std::begin(flat.instances[i].to_object), std::end(flat.instances[i].to_object),
+                                                           [](float x) { return std::isfinite(x); }));
     if (!usable) {
       far++;
       continue;
     }
     kernel::Instance instance = flat.instances[i];
+    take_keys(keys[i], instance, flat);
     for (int c = 0; c < 3; c++) {
       instance.lower[c] = boxes[i].lower[c];
       instance.upper[c] = boxes[i].upper[c];
@@ -321,7 +406,10 @@ void write_shapes(const Scene &scene, bool planes, bool extras, FlatScene &flat,
     kernel::Instance instance{};
     std::copy(std::begin(p.m), std::end(p.m), instance.to_world);
     invert(p, instance.to_object);
-    const Bounds box = planes ? Bounds{glm::vec3(0), glm::vec3(0)} : shape_box(p.m, shape.kind);
+    const std::vector<kernel::InstanceKey> keys = keys_of(shape.transform, shape.keys);
+    Bounds box = planes ? Bounds{glm::vec3(0), glm::vec3(0)} : shape_box(p.m, shape.kind);
+    for (const kernel::InstanceKey &key : keys)
+      if (!planes) include_box(box, shape_box(key.to_world, shape.kind));
     if (!in_range(box) || !std::all_of(std::begin(instance.to_object), std::end(instance.to_object), [](float x) { return std::isfinite(x); })) {
       far++;
       continue;
@@ -330,6 +418,7 @@ void write_shapes(const Scene &scene, bool planes, bool extras, FlatScene &flat,
     instance.flags = kind_bit(shape.kind) | (p.mirrored() ? SUN_INSTANCE_MIRRORED : 0);
     if (single_sided(flat.materials[material])) instance.flags |= SUN_INSTANCE_SINGLE_SIDED;
     if (flat.materials[material].flags & SUN_MATERIAL_PASSABLE) instance.flags |= SUN_INSTANCE_PASSABLE;
+    take_keys(keys, instance, flat);
     instance.first_emitter = SUN_NONE;
     for (int c = 0; c < 3; c++) {
       instance.lower[c] = box.lower[c];
@@ -371,10 +460,14 @@ glm::vec3 transform_point(const kernel::Instance &instance, const float *positio
 
 std::vector<MeshUse> mesh_uses(const Scene &scene) {
   std::vector<MeshUse> uses(scene.meshes.size());
-  for (const Instance &instance : scene.instances) uses[static_cast<std::size_t>(instance.mesh)].instances++;
+  std::vector<bool> moves(scene.meshes.size());
+  for (const Instance &instance : scene.instances) {
+    uses[static_cast<std::size_t>(instance.mesh)].instances++;
+    if (!instance.keys.empty()) moves[static_cast<std::size_t>(instance.mesh)] = true;
+  }
   for (std::size_t m = 0; m < uses.size(); m++) {
     for (const Primitive &primitive : scene.meshes[m].primitives) uses[m].triangles += primitive.indices.size() / 3;
-    uses[m].baked = uses[m].instances == 1 || uses[m].instances * uses[m].triangles <= small_mesh;
+    uses[m].baked = (uses[m].instances == 1 || uses[m].instances * uses[m].triangles <= small_mesh) && !moves[m] && !scene.meshes[m].deforms();
   }
   return uses;
 }
@@ -419,26 +512,34 @@ void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat
       add_parts(m, placement_of(scene.instances[i].transform), i + 1, 0);
   const bool any_baked = !parts.empty();
   std::size_t ranges = any_baked ? 1 : 0;
-  for (std::size_t m = 0; m < uses.size(); m++)
-    if (uses[m].instances && !uses[m].baked) {
-      range_of_mesh[m] = ranges;
-      add_parts(m, {}, 0, ranges++);
-    }
+  // What deforms stands last.
+  for (const bool deforms : {false, true})
+    for (std::size_t m = 0; m < uses.size(); m++)
+      if (uses[m].instances && !uses[m].baked && scene.meshes[m].deforms() == deforms) {
+        range_of_mesh[m] = ranges;
+        add_parts(m, {}, 0, ranges++);
+        flat.meshes.resize(ranges);
+        flat.meshes.back().deforms = deforms;
+      }
 
-  std::size_t vertices = 0;
+  std::size_t vertices = 0, deforming = 0;
   for (Part &part : parts) {
     part.first_vertex = vertices;
     vertices += part.welded->source.size();
+    if (part.range < flat.meshes.size() && flat.meshes[part.range].deforms) deforming += part.welded->source.size();
   }
+  vertices += flat.motion_steps * deforming;
   check_size("vertices", vertices, sizeof(kernel::Vertex), max_bytes);
   if (vertices >= SUN_NONE) throw Error{"flatten", "more than 2^32 vertices"};
+  flat.deforming = static_cast<uint>(deforming);
   const bool extras = extras_wanted(scene, flat, uses);
   flat.has_textures = flat.has_textures || extras;
   if (extras) check_size("vertices with tangents or colours", vertices, sizeof(kernel::VertexExtra), max_bytes);
   flat.vertices.resize(vertices);
   flat.vertex_extras.resize(extras ? vertices : 1);
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
-    write_vertices(parts[i], flat, extras);
+    const bool deforms = parts[i].range < flat.meshes.size() && flat.meshes[parts[i].range].deforms;
+    for (std::size_t key = 0; key <= (deforms ? flat.motion_steps : 0); key++) write_vertices(parts[i], flat, extras, key);
     for (std::size_t t = 0; 3 * t < parts[i].welded->indices.size(); t++) parts[i].triangles += kept(flat, parts[i], t);
   });
 

@@ -25,11 +25,11 @@ float area(const Node &node) {
 
 uint triangle_of(const FlatScene &scene, uint item) { return item & SUN_ID_FRAGMENT ? scene.fragments[item & SUN_ID_PRIMITIVE].primitive : item; }
 
-std::array<float, 9> corners(const FlatScene &scene, uint item) {
+std::array<float, 9> corners(const FlatScene &scene, uint item, std::size_t key) {
   const uint triangle = triangle_of(scene, item);
   std::array<float, 9> v;
   for (int corner = 0; corner < 3; corner++)
-    std::copy_n(scene.vertices[scene.triangles[triangle].vertex[corner]].position, 3, v.begin() + 3 * corner);
+    std::copy_n(scene.vertices[scene.triangles[triangle].vertex[corner] + key * scene.deforming].position, 3, v.begin() + 3 * corner);
   return v;
 }
 
@@ -43,7 +43,7 @@ std::vector<std::byte> bytes_of(const std::vector<T> &values) {
   return bytes;
 }
 
-TreePart lay_out_binary(const BinaryTree &tree) {
+TreePart lay_out_binary(const BinaryTree &tree, std::size_t keys) {
   TreePart part;
   std::vector<kernel::BinaryNode> nodes(tree.nodes.size());
   for (std::size_t i = 0; i < nodes.size(); i++) {
@@ -51,7 +51,7 @@ TreePart lay_out_binary(const BinaryTree &tree) {
     kernel::BinaryNode &to = nodes[i];
     std::copy_n(from.lower, 3, to.lower);
     std::copy_n(from.upper, 3, to.upper);
-    to.first = from.first_child ? from.first_child : from.first_item;
+    to.first = from.first_child ? from.first_child : uint(from.first_item * keys);
     to.count = from.first_child ? 0 : from.item_count;
   }
   part.nodes = bytes_of(nodes);
@@ -201,19 +201,21 @@ class Collapse {
 };
 
 template <class WideNode>
-TreePart lay_out_wide_mesh(const BinaryTree &tree, const FlatScene &scene) {
+TreePart lay_out_wide_mesh(const BinaryTree &tree, const FlatScene &scene, std::size_t keys) {
   std::vector<kernel::WidePack> packs;
   TreePart part = Collapse<WideNode>(tree, SUN_PACK).run([&](const Node &node) {
-    kernel::WidePack &pack = packs.emplace_back();
-    for (auto &row : pack.v) std::fill(std::begin(row), std::end(row), std::numeric_limits<float>::quiet_NaN());
-    std::fill(std::begin(pack.id), std::end(pack.id), 0u);
-    for (uint lane = 0; lane < node.item_count; lane++) {
-      const uint item = tree.items[node.first_item + lane];
-      const auto v = corners(scene, item);
-      for (int k = 0; k < 9; k++) pack.v[k][lane] = v[k];
-      pack.id[lane] = id_of(scene, item);
+    for (std::size_t key = 0; key < keys; key++) {
+      kernel::WidePack &pack = packs.emplace_back();
+      for (auto &row : pack.v) std::fill(std::begin(row), std::end(row), std::numeric_limits<float>::quiet_NaN());
+      std::fill(std::begin(pack.id), std::end(pack.id), 0u);
+      for (uint lane = 0; lane < node.item_count; lane++) {
+        const uint item = tree.items[node.first_item + lane];
+        const auto v = corners(scene, item, key);
+        for (int k = 0; k < 9; k++) pack.v[k][lane] = v[k];
+        pack.id[lane] = id_of(scene, item);
+      }
     }
-    return uint(packs.size() - 1);
+    return uint(packs.size() - keys);
   });
   part.leaves = bytes_of(packs);
   part.leaf_count = packs.size();
@@ -262,15 +264,19 @@ std::size_t leaf_bytes(Layout layout) { return layout == Layout::binary ? sizeof
 
 std::size_t stack_entries(Layout layout) { return layout == Layout::binary ? SUN_BINARY_STACK : SUN_WIDE_STACK; }
 
-TreePart lay_out_mesh(const BinaryTree &tree, Layout layout, const FlatScene &scene) {
-  if (layout == Layout::wide8) return lay_out_wide_mesh<kernel::Wide8Node>(tree, scene);
-  if (layout == Layout::wide16) return lay_out_wide_mesh<kernel::Wide16Node>(tree, scene);
-  TreePart part = lay_out_binary(tree);
-  std::vector<kernel::LeafTriangle> leaves(tree.items.size());
+std::size_t mesh_keys(const FlatScene &scene, const MeshRange &mesh) { return mesh.deforms ? scene.motion_steps + 1 : 1; }
+
+TreePart lay_out_mesh(const BinaryTree &tree, Layout layout, const FlatScene &scene, std::size_t keys) {
+  if (layout == Layout::wide8) return lay_out_wide_mesh<kernel::Wide8Node>(tree, scene, keys);
+  if (layout == Layout::wide16) return lay_out_wide_mesh<kernel::Wide16Node>(tree, scene, keys);
+  if (tree.items.size() > SUN_NONE / keys) throw Error{"tree", "more than 2^32 leaves"};
+  TreePart part = lay_out_binary(tree, keys);
+  std::vector<kernel::LeafTriangle> leaves(tree.items.size() * keys);
   for (std::size_t i = 0; i < leaves.size(); i++) {
-    const auto v = corners(scene, tree.items[i]);
+    const uint item = tree.items[i / keys];
+    const auto v = corners(scene, item, i % keys);
     std::copy(v.begin(), v.end(), leaves[i].v);
-    leaves[i].id = id_of(scene, tree.items[i]);
+    leaves[i].id = id_of(scene, item);
   }
   part.leaves = bytes_of(leaves);
   part.leaf_count = leaves.size();
@@ -281,7 +287,7 @@ TreePart lay_out_instances(const BinaryTree &tree, Layout layout) {
   const auto instance_of = [&](const Node &node) { return tree.items[node.first_item]; };
   if (layout == Layout::wide8) return Collapse<kernel::Wide8Node>(tree, 1).run(instance_of);
   if (layout == Layout::wide16) return Collapse<kernel::Wide16Node>(tree, 1).run(instance_of);
-  TreePart part = lay_out_binary(tree);
+  TreePart part = lay_out_binary(tree, 1);
   part.instance_list = tree.items;
   return part;
 }

@@ -37,8 +37,11 @@ std::size_t leaf_bytes(Layout layout);
 // Entries of the kernels' stack, shared/bvh.h.
 std::size_t stack_entries(Layout layout);
 
+// As often as a leaf of this mesh stands there: once, or for each key of the shutter's time.
+std::size_t mesh_keys(const FlatScene &scene, const MeshRange &mesh);
+
 // Items are numbers of triangles of `scene`, or of fragments with SUN_ID_FRAGMENT.
-TreePart lay_out_mesh(const BinaryTree &tree, Layout layout, const FlatScene &scene);
+TreePart lay_out_mesh(const BinaryTree &tree, Layout layout, const FlatScene &scene, std::size_t keys = 1);
 // Items are numbers of instances.
 TreePart lay_out_instances(const BinaryTree &tree, Layout layout);
 

@@ -65,7 +65,10 @@ WeldedPrimitive weld(const Primitive &primitive, bool tangents, int uv_set) {
   for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
     const std::uint32_t *index = &primitive.indices[i];
     const glm::dvec3 cross = triangle_cross(primitive.positions[index[0]], primitive.positions[index[1]], primitive.positions[index[2]]);
-    if (cross == glm::dvec3(0)) {
+    const bool later = std::any_of(primitive.keys.begin(), primitive.keys.end(), [&](const PrimitiveKey &key) {
+      return triangle_cross(key.positions[index[0]], key.positions[index[1]], key.positions[index[2]]) != glm::dvec3(0);
+    });
+    if (cross == glm::dvec3(0) && !later) {
       out.dropped++;
       continue;
     }

@@ -99,7 +99,7 @@ Scene import_gltf(const std::filesystem::path &path, const ImportOptions &option
   Materials materials(root, images);
   Meshes meshes(root, accessors, materials);
   const Animation animation = chosen_animation(root, accessors, options);
-  Nodes(root, accessors, materials, meshes).import(animation, options.time.value_or(0), scene);
+  Nodes(root, accessors, materials, meshes).import(animation, options.time.value_or(0), options.shutter, scene);
   images.read(scene);
 
   if (scene.instances.empty() && scene.shapes.empty()) context.report.warning(file, "there is no triangle in it to render");

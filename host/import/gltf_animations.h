@@ -25,6 +25,7 @@ class Animation {
   Animation(const Value &root, Accessors &accessors, const std::string &choice);
 
   Pose pose(std::size_t node, double time) const;
+  bool moves(std::size_t node) const { return curves_.contains(node); }
   double first() const { return first_; }  // seconds, over all curves
   double last() const { return last_; }
 

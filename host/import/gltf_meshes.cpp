@@ -90,6 +90,51 @@ void add_scaled(std::vector<Vector> &values, const std::vector<glm::vec3> &delta
     for (int c = 0; c < 3; c++) values[i][c] += weight * deltas[i][c];
 }
 
+// Morph targets, each read when a weight asks for it.
+class MorphTargets {
+ public:
+  MorphTargets(const Value &targets, Accessors &accessors) : targets_(targets), accessors_(accessors), read_(targets.size()) {}
+
+  void apply(const std::vector<double> &weights, Primitive &primitive) {
+    if (targets_.size() == 0) return;
+    if (!weights.empty() && weights.size() != targets_.size())
+      targets_.fail("there are " + counted(targets_.size(), "targets") + ", but " + counted(weights.size(), "weights"));
+    for (std::size_t t = 0; t < weights.size(); t++) {
+      const float weight = static_cast<float>(weights[t]);
+      if (weight == 0) continue;
+      if (!read_[t]) read_[t] = read(targets_[t], primitive);
+      if (!read_[t]->positions.empty()) add_scaled(primitive.positions, read_[t]->positions, weight);
+      if (!read_[t]->normals.empty()) add_scaled(primitive.normals, read_[t]->normals, weight);
+      if (!read_[t]->tangents.empty()) add_scaled(primitive.tangents, read_[t]->tangents, weight);
+    }
+  }
+
+ private:
+  struct Deltas {
+    std::vector<glm::vec3> positions, normals, tangents;
+  };
+  Deltas read(const Value &target, const Primitive &primitive) {
+    target.expect_object();
+    const auto deltas = [&](const Value &attribute) {
+      const Accessor accessor = accessors_.open(attribute, 3);
+      if (accessor.count != primitive.positions.size())
+        attribute.fail("has " + counted(accessor.count, "elements") + ", but there are " + counted(primitive.positions.size(), "positions"));
+      return accessors_.floats<3>(accessor);
+    };
+    Deltas all;
+    if (const Value position = target["POSITION"]) all.positions = deltas(position);
+    if (const Value normal = target["NORMAL"]; normal && !primitive.normals.empty()) all.normals = deltas(normal);
+    if (const Value tangent = target["TANGENT"]; tangent && !primitive.tangents.empty()) all.tangents = deltas(tangent);
+    for (const char *other : {"TEXCOORD_0", "TEXCOORD_1", "COLOR_0"})
+      if (target[other]) target[other].warn("texture coordinates and colours are not morphed");
+    return all;
+  }
+
+  Value targets_;
+  Accessors &accessors_;
+  std::vector<std::optional<Deltas>> read_;
+};
+
 }  // namespace
 
 void Meshes::read_attributes(const Value &value, Primitive &primitive) {
@@ -134,29 +179,6 @@ void Meshes::read_attributes(const Value &value, Primitive &primitive) {
   }
 }
 
-void Meshes::apply_morph_targets(const Value &targets, const std::vector<double> &weights, Primitive &primitive) {
-  if (targets.size() == 0) return;
-  if (!weights.empty() && weights.size() != targets.size())
-    targets.fail("there are " + counted(targets.size(), "targets") + ", but " + counted(weights.size(), "weights"));
-  const auto deltas = [&](const Value &attribute) {
-    const Accessor accessor = accessors_.open(attribute, 3);
-    if (accessor.count != primitive.positions.size())
-      attribute.fail("has " + counted(accessor.count, "elements") + ", but there are " + counted(primitive.positions.size(), "positions"));
-    return accessors_.floats<3>(accessor);
-  };
-  for (std::size_t t = 0; t < weights.size(); t++) {
-    const float weight = static_cast<float>(weights[t]);
-    if (weight == 0) continue;
-    const Value target = targets[t];
-    target.expect_object();
-    if (const Value position = target["POSITION"]) add_scaled(primitive.positions, deltas(position), weight);
-    if (const Value normal = target["NORMAL"]; normal && !primitive.normals.empty()) add_scaled(primitive.normals, deltas(normal), weight);
-    if (const Value tangent = target["TANGENT"]; tangent && !primitive.tangents.empty()) add_scaled(primitive.tangents, deltas(tangent), weight);
-    for (const char *other : {"TEXCOORD_0", "TEXCOORD_1", "COLOR_0"})
-      if (target[other]) target[other].warn("texture coordinates and colours are not morphed");
-  }
-}
-
 void Meshes::read_indices(const Value &value, Primitive &primitive) {
   const Mode mode = static_cast<Mode>(value["mode"].whole(4));
   std::vector<std::uint32_t> row;
@@ -180,7 +202,7 @@ void Meshes::read_indices(const Value &value, Primitive &primitive) {
   primitive.indices = triangles_of(row, mode);
 }
 
-bool Meshes::read_primitive(const Value &value, const std::vector<double> &weights, const std::optional<Joints> &joints, Primitive &primitive) {
+bool Meshes::read_primitive(const Value &value, const std::vector<MeshPose> &poses, Primitive &primitive) {
   value.expect_object();
   value.check_extensions({"KHR_draco_mesh_compression"});
   const Value mode = value["mode"];
@@ -199,49 +221,74 @@ bool Meshes::read_primitive(const Value &value, const std::vector<double> &weigh
   if (value.extension("KHR_draco_mesh_compression"))
     value.context().report.once(value.context().file, "KHR_draco_mesh_compression is not supported: the uncompressed data is read instead");
   read_attributes(value, primitive);
-  apply_morph_targets(value["targets"], weights, primitive);
+  const Primitive stored = poses.size() > 1 ? primitive : Primitive{};
+  MorphTargets targets(value["targets"], accessors_);
+  targets.apply(*poses[0].weights, primitive);
   read_indices(value, primitive);
   if (primitive.indices.empty()) {
     value.warn("has no triangle and was skipped");
     return false;
   }
-  if (joints) apply_skin(attributes, *joints, accessors_, primitive);
-  repair_normals(attributes["NORMAL"], primitive);
-  repair_tangents(attributes["TANGENT"], primitive);
+  Influences influences;
+  if (poses[0].joints) influences = read_influences(attributes, primitive.positions.size(), accessors_);
+  const std::vector<std::uint32_t> indices = poses.size() > 1 ? primitive.indices : std::vector<std::uint32_t>{};
+  const auto finish = [&](const MeshPose &pose, Primitive &posed) {
+    if (pose.joints) apply_skin(attributes, influences, *pose.joints, posed);
+    repair_normals(attributes["NORMAL"], posed);
+    repair_tangents(attributes["TANGENT"], posed);
+  };
+  finish(poses[0], primitive);
+  // The triangles, and which of them a mirror turns, are those of the first pose.
+  for (std::size_t key = 1; key < poses.size(); key++) {
+    accessors_.budget().take(stored.positions.size(), 2 * sizeof(glm::vec3) + (stored.tangents.empty() ? 0 : sizeof(glm::vec4)), value);
+    Primitive posed;
+    posed.positions = stored.positions;
+    posed.normals = stored.normals;
+    posed.tangents = stored.tangents;
+    posed.indices = indices;
+    targets.apply(*poses[key].weights, posed);
+    finish(poses[key], posed);
+    primitive.keys.push_back({std::move(posed.positions), std::move(posed.normals), std::move(posed.tangents)});
+  }
   return true;
 }
 
-Mesh Meshes::read(const Value &value, const std::vector<double> &weights, const std::optional<Joints> &joints, Scene &scene) {
+Mesh Meshes::read(const Value &value, const std::vector<MeshPose> &poses, Scene &scene) {
   const Value primitives = value["primitives"];
   if (primitives.size() == 0) primitives.fail(primitives ? "is empty" : "is missing");
   Mesh mesh;
   mesh.name = value["name"].text();
   for (std::size_t i = 0; i < primitives.size(); i++) {
     Primitive primitive;
-    if (!read_primitive(primitives[i], weights, joints, primitive)) continue;
+    if (!read_primitive(primitives[i], poses, primitive)) continue;
     primitive.material = materials_.material(primitives[i]["material"], scene);
     mesh.primitives.push_back(std::move(primitive));
   }
   return mesh;
 }
 
-int Meshes::mesh(const Value &node, const std::optional<std::vector<double>> &animated, const std::optional<Joints> &joints, Scene &scene) {
+int Meshes::mesh(const Value &node, std::vector<MeshPose> poses, Scene &scene) {
   const std::size_t index = node["mesh"].index(meshes_.size(), "meshes");
   const Value value = meshes_[index];
   value.expect_object();
   const Value weights_value = node["weights"] ? node["weights"] : value["weights"];
-  const std::vector<double> weights = animated ? *animated : weights_value.numbers(weights_value.size());
-  if (!animated)
-    for (std::size_t i = 0; i < weights.size(); i++) weights_value[i].real(0);
+  std::vector<double> all_weights;
+  for (MeshPose &pose : poses) {
+    if (!pose.weights) {
+      pose.weights = weights_value.numbers(weights_value.size());
+      for (std::size_t i = 0; i < pose.weights->size(); i++) weights_value[i].real(0);
+    }
+    all_weights.insert(all_weights.end(), pose.weights->begin(), pose.weights->end());
+  }
   const auto add = [&]() -> int {
     value.check_extensions({});
-    Mesh mesh = read(value, weights, joints, scene);
+    Mesh mesh = read(value, poses, scene);
     if (mesh.primitives.empty()) return -1;
     scene.meshes.push_back(std::move(mesh));
     return static_cast<int>(scene.meshes.size()) - 1;
   };
-  if (joints) return add();
-  const auto [found, is_new] = numbers_.try_emplace({index, weights}, -1);
+  if (poses[0].joints) return add();
+  const auto [found, is_new] = numbers_.try_emplace({index, all_weights}, -1);
   if (is_new) found->second = add();
   return found->second;
 }

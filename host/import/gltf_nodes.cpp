@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "import/gltf_skins.h"
+#include "shared/motion.h"
 
 namespace sunstone::gltf {
 
@@ -171,7 +172,93 @@ void Nodes::place(const std::vector<std::size_t> &roots) {
   }
 }
 
-void Nodes::import(const Animation &animation, double time, Scene &scene) {
+Nodes::Key Nodes::key_at(const Animation &animation, double time) {
+  Key key;
+  for (const std::size_t node : moving_) {
+    key.poses.push_back(animation.pose(node, time));
+    const int parent = parents_[node], among = parent < 0 ? -1 : place_in_moving_[static_cast<std::size_t>(parent)];
+    const glm::dmat4 above = parent < 0 ? glm::dmat4(1) : among < 0 ? worlds_[static_cast<std::size_t>(parent)] : key.worlds[static_cast<std::size_t>(among)];
+    key.worlds.push_back(above * local_transform(nodes_[node], key.poses.back()));
+  }
+  return key;
+}
+
+void Nodes::find_moving(const Animation &animation) {
+  place_in_moving_.assign(nodes_.size(), -1);
+  for (const std::size_t node : order_) {
+    const int parent = parents_[node];
+    if (!animation.moves(node) && (parent < 0 || place_in_moving_[static_cast<std::size_t>(parent)] < 0)) continue;
+    place_in_moving_[node] = static_cast<int>(moving_.size());
+    moving_.push_back(node);
+  }
+}
+
+// Is a straight line between each two keys near enough to the way? By a thousandth: of a node's size where it turns or grows, of its way where its origin goes,
+// of the range of a weight. Looked at in three places a step, which no regular motion favours.
+bool Nodes::straight(const std::vector<Key> &keys, const Animation &animation, double time, double shutter) {
+  constexpr double bound = 1.0 / 1024, places[] = {0.29, 0.5, 0.83};
+  const auto size = [](const glm::dvec3 &v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); };
+  const std::size_t steps = keys.size() - 1;
+  std::vector<double> way(moving_.size());
+  for (const Key &key : keys)
+    for (std::size_t i = 0; i < moving_.size(); i++) way[i] = std::max(way[i], size(glm::dvec3(key.worlds[i][3] - keys[0].worlds[i][3])));
+  for (std::size_t step = 0; step < steps; step++)
+    for (const double place : places) {
+      const Key real = key_at(animation, time + shutter * ((static_cast<double>(step) + place) / static_cast<double>(steps)));
+      for (std::size_t i = 0; i < moving_.size(); i++) {
+        const glm::dmat4 &a = keys[step].worlds[i], &b = keys[step + 1].worlds[i], &m = real.worlds[i];
+        const auto error = [&](int column) { return size(glm::dvec3(a[column] + (b[column] - a[column]) * place - m[column])); };
+        const double extent = std::max({size(glm::dvec3(m[0])), size(glm::dvec3(m[1])), size(glm::dvec3(m[2]))});
+        for (int column = 0; column < 3; column++)
+          if (error(column) > bound * extent) return false;
+        if (error(3) > bound * std::max(way[i], size(glm::dvec3(m[3] - keys[0].worlds[i][3])))) return false;
+        if (!real.poses[i].weights) continue;
+        const std::vector<double> &w = *real.poses[i].weights, &wa = *keys[step].poses[i].weights, &wb = *keys[step + 1].poses[i].weights, &first = *keys[0].poses[i].weights;
+        for (std::size_t k = 0; k < w.size(); k++) {
+          double range = std::fabs(w[k] - first[k]);
+          for (const Key &key : keys) range = std::max(range, std::fabs((*key.poses[i].weights)[k] - first[k]));
+          if (std::fabs(wa[k] + (wb[k] - wa[k]) * place - w[k]) > bound * range) return false;
+        }
+      }
+    }
+  return true;
+}
+
+// Twice as many until lines are straight enough. None where the file, or all that it shows, keeps still.
+void Nodes::make_keys(const Animation &animation, double time, double shutter) {
+  find_moving(animation);
+  if (moving_.empty() || !(shutter > 0)) return;
+  std::vector<Key> keys;
+  for (unsigned steps = 1;; steps *= 2) {
+    std::vector<Key> finer;
+    for (unsigned k = 0; k <= steps; k++)
+      finer.push_back(k % 2 == 0 && !keys.empty() ? std::move(keys[k / 2]) : key_at(animation, time + shutter * (static_cast<double>(k) / steps)));
+    keys = std::move(finer);
+    if (steps == SUN_MOST_MOTION_STEPS || straight(keys, animation, time, shutter)) break;
+  }
+  const auto same = [&](const Key &key) {
+    for (std::size_t i = 0; i < moving_.size(); i++)
+      if (key.worlds[i] != keys[0].worlds[i] || key.poses[i].weights != keys[0].poses[i].weights) return false;
+    return true;
+  };
+  if (!std::all_of(keys.begin(), keys.end(), same)) keys_ = std::move(keys);
+}
+
+const glm::dmat4 &Nodes::world(std::size_t node, std::size_t key) const {
+  return key == 0 || place_in_moving_[node] < 0 ? worlds_[node] : keys_[key].worlds[static_cast<std::size_t>(place_in_moving_[node])];
+}
+
+const Pose &Nodes::pose(std::size_t node, std::size_t key) const {
+  return key == 0 || place_in_moving_[node] < 0 ? poses_[node] : keys_[key].poses[static_cast<std::size_t>(place_in_moving_[node])];
+}
+
+bool Nodes::moves(std::size_t node) const {
+  for (std::size_t key = 1; key < keys_.size(); key++)
+    if (world(node, key) != worlds_[node]) return true;
+  return false;
+}
+
+void Nodes::import(const Animation &animation, double time, double shutter, Scene &scene) {
   check_hierarchy();
   const std::size_t count = nodes_.size();
   for (std::size_t i = 0; i < count; i++) poses_.push_back(animation.pose(i, time));
@@ -186,52 +273,78 @@ void Nodes::import(const Animation &animation, double time, Scene &scene) {
       if (parents_[i] < 0 && std::find(roots.begin(), roots.end(), i) == roots.end()) others.push_back(i);
     place(others);
   }
+  make_keys(animation, time, shutter);
   for (const std::size_t i : shown) add_node(i, scene);
+  if (!keys_.empty()) scene.motion_steps = static_cast<unsigned>(keys_.size() - 1);
 }
 
-std::optional<Joints> Nodes::joints_of(const Value &node) {
+std::optional<Joints> Nodes::joints_of(const Value &node, std::size_t key) {
   const Value reference = node["skin"];
   if (!reference) return {};
   const Value skin = skins_[reference.index(skins_.size(), "skins")];
   const std::vector<std::size_t> numbers = read_joints(skin, nodes_.size());
   accessors_.budget().take(numbers.size(), 2 * sizeof(glm::dmat4), skin);
   Joints worlds;
-  for (const std::size_t joint : numbers) worlds.push_back(worlds_[joint]);
+  for (const std::size_t joint : numbers) worlds.push_back(world(joint, key));
   Joints joints = joint_matrices(skin, worlds, accessors_);
   for (const glm::dmat4 &joint : joints)
     if (!usable(joint)) skin.fail("the transform of one of its joints is not finite or beyond all measure");
   return joints;
 }
 
+// One where neither weights nor joints change.
+std::vector<MeshPose> Nodes::mesh_poses(std::size_t number, bool skinned) {
+  const Value node = nodes_[number];
+  std::vector<MeshPose> poses;
+  bool deforms = false;
+  for (std::size_t key = 0; key < std::max<std::size_t>(1, keys_.size()); key++) {
+    poses.push_back({pose(number, key).weights, skinned ? joints_of(node, key) : std::nullopt});
+    deforms = deforms || poses[key].weights != poses[0].weights || poses[key].joints != poses[0].joints;
+  }
+  if (!deforms) poses.resize(1);
+  return poses;
+}
+
 void Nodes::add_node(std::size_t number, Scene &scene) {
   const Value node = nodes_[number];
-  const glm::dmat4 &world = worlds_[number];
   node.check_extensions({"KHR_lights_punctual", "EXT_mesh_gpu_instancing"});
   const Value mesh = node["mesh"], camera = node["camera"], light = node.extension("KHR_lights_punctual");
   // Extras may be anything at all.
   const Value extras = node["extras"], shape = extras && extras.json().is_object() ? extras["sunstone_shape"] : Value(node.context(), nullptr, "");
   if (!mesh && !camera && !light && !shape) return;
-  if (!usable(world)) {
-    node.warn("its transform is not finite or beyond all measure, so it was left out");
-    return;
-  }
-  if (mesh) add_instances(node, poses_[number].weights, world, scene);
-  if (camera) add_camera(node, world, scene);
-  if (light) add_light(node, world, scene);
-  if (shape) add_shape(node, shape, world, scene);
+  for (std::size_t key = 0; key < std::max<std::size_t>(1, keys_.size()); key++)
+    if (!usable(world(number, key))) {
+      node.warn("its transform is not finite or beyond all measure, so it was left out");
+      return;
+    }
+  if (mesh) add_instances(number, node, scene);
+  if (camera) add_camera(number, node, scene);
+  if (light) add_light(number, node, scene);
+  if (shape) add_shape(number, node, shape, scene);
 }
 
-void Nodes::add_instances(const Value &node, const std::optional<std::vector<double>> &weights, const glm::dmat4 &world, Scene &scene) {
+void Nodes::add_instances(std::size_t number, const Value &node, Scene &scene) {
   const Value instancing = node.extension("EXT_mesh_gpu_instancing");
   if (instancing && node["skin"]) instancing.warn("a mesh that is placed many times does not follow its skin");
-  const std::optional<Joints> joints = instancing ? std::nullopt : joints_of(node);
-  const int mesh = meshes_.mesh(node, weights, joints, scene);
+  std::vector<MeshPose> poses = mesh_poses(number, !instancing);
+  const bool skinned = poses[0].joints.has_value(), moving = moves(number);
+  const int mesh = meshes_.mesh(node, std::move(poses), scene);
   if (mesh < 0) return;
+  // `within` the node's own space, where it stands elsewhere than that.
+  const auto add = [&](std::string name, const glm::dmat4 *within) {
+    const auto at = [&](std::size_t key) { return rounded(within ? world(number, key) * *within : world(number, key)); };
+    Instance instance{std::move(name), mesh, at(0)};
+    for (std::size_t key = 1; moving && key < keys_.size(); key++) instance.keys.push_back(at(key));
+    scene.instances.push_back(std::move(instance));
+  };
   std::string name = node["name"].text();
   if (name.empty()) name = scene.meshes[static_cast<std::size_t>(mesh)].name;
   if (!instancing) {
     // Joints alone say where a skinned mesh is: its node's own place has no part in it.
-    scene.instances.push_back({std::move(name), mesh, joints ? glm::mat4x3(1) : rounded(world)});
+    if (skinned)
+      scene.instances.push_back({std::move(name), mesh, glm::mat4x3(1)});
+    else
+      add(std::move(name), nullptr);
     return;
   }
   const Value attributes = instancing["attributes"];
@@ -257,15 +370,17 @@ void Nodes::add_instances(const Value &node, const std::optional<std::vector<dou
   for (std::size_t i = 0; i < *count; i++) {
     const glm::dvec3 t = translation ? glm::dvec3(translations[i]) : glm::dvec3(0), s = scale ? glm::dvec3(scales[i]) : glm::dvec3(1);
     const glm::dvec4 q = rotation ? unit_quaternion(glm::dvec4(rotations[i]), attributes["ROTATION"]) : glm::dvec4(0, 0, 0, 1);
-    const glm::dmat4 transform = world * compose(t, q, s);
-    if (usable(transform))
-      scene.instances.push_back({name, mesh, rounded(transform)});
+    const glm::dmat4 within = compose(t, q, s);
+    bool fits = true;
+    for (std::size_t key = 0; key < std::max<std::size_t>(1, keys_.size()); key++) fits = fits && usable(world(number, key) * within);
+    if (fits)
+      add(name, &within);
     else
       instancing.warn("instances whose transform is not finite or beyond all measure were left out");
   }
 }
 
-void Nodes::add_camera(const Value &node, const glm::dmat4 &world, Scene &scene) {
+void Nodes::add_camera(std::size_t number, const Value &node, Scene &scene) {
   const Value value = cameras_[node["camera"].index(cameras_.size(), "cameras")];
   value.expect_object();
   value.check_extensions({});
@@ -298,18 +413,28 @@ void Nodes::add_camera(const Value &node, const glm::dmat4 &world, Scene &scene)
     value["type"].fail(value["type"] ? "\"" + printable(type) + "\" is neither perspective nor orthographic" : "is missing");
   }
   // Rigid: a camera has no size, so its axes are made unit and perpendicular, the line of sight first.
-  const std::optional<glm::dvec3> back = unit(glm::dvec3(world[2]));
-  const std::optional<glm::dvec3> right = back ? unit(glm::cross(glm::dvec3(world[1]), *back)) : std::nullopt;
-  if (!right) {
-    node.warn("its transform leaves a camera no direction, so the camera was left out");
-    return;
+  const auto rigid = [](const glm::dmat4 &world) -> std::optional<glm::mat4x3> {
+    const std::optional<glm::dvec3> back = unit(glm::dvec3(world[2]));
+    const std::optional<glm::dvec3> right = back ? unit(glm::cross(glm::dvec3(world[1]), *back)) : std::nullopt;
+    if (!right) return {};
+    return glm::mat4x3(glm::vec3(*right), glm::vec3(glm::cross(*back, *right)), glm::vec3(*back), glm::vec3(world[3]));
+  };
+  for (std::size_t key = 0; key < (moves(number) ? keys_.size() : 1); key++) {
+    const std::optional<glm::mat4x3> transform = rigid(world(number, key));
+    if (!transform) {
+      node.warn("its transform leaves a camera no direction, so the camera was left out");
+      return;
+    }
+    if (key == 0)
+      camera.transform = *transform;
+    else
+      camera.keys.push_back(*transform);
   }
-  camera.transform = {glm::vec3(*right), glm::vec3(glm::cross(*back, *right)), glm::vec3(*back), glm::vec3(world[3])};
   scene.cameras.push_back(std::move(camera));
 }
 
 // An analytic shape: {"shape": index into KHR_implicit_shapes} or {"type": "disk" | "quad" | "plane" ...}; docs/conventions.md has the whole of it.
-void Nodes::add_shape(const Value &node, const Value &value, const glm::dmat4 &world, Scene &scene) {
+void Nodes::add_shape(std::size_t number, const Value &node, const Value &value, Scene &scene) {
   value.expect_object();
   Shape shape;
   shape.name = node["name"].text();
@@ -351,17 +476,23 @@ void Nodes::add_shape(const Value &node, const Value &value, const glm::dmat4 &w
   if (shape.kind != Shape::Kind::sphere) size.y = size.x;  // its normal's length means nothing; alike, it keeps the transform regular
   shape.material = materials_.material(value["material"], scene);
   accessors_.budget().take(1, sizeof(Shape) + shape.name.size(), node);
-  const glm::dmat4 transform = world * glm::dmat4(glm::dvec4(size.x, 0, 0, 0), glm::dvec4(0, size.y, 0, 0), glm::dvec4(0, 0, size.z, 0), glm::dvec4(0, 0, 0, 1));
-  if (!usable(transform)) {
-    node.warn("its transform is not finite or beyond all measure, so it was left out");
-    return;
+  for (std::size_t key = 0; key < (moves(number) ? keys_.size() : 1); key++) {
+    const glm::dmat4 transform =
+        world(number, key) * glm::dmat4(glm::dvec4(size.x, 0, 0, 0), glm::dvec4(0, size.y, 0, 0), glm::dvec4(0, 0, size.z, 0), glm::dvec4(0, 0, 0, 1));
+    if (!usable(transform)) {
+      node.warn("its transform is not finite or beyond all measure, so it was left out");
+      return;
+    }
+    if (key == 0)
+      shape.transform = rounded(transform);
+    else
+      shape.keys.push_back(rounded(transform));
   }
-  shape.transform = rounded(transform);
   scene.shapes.push_back(std::move(shape));
 }
 
 // KHR_lights_punctual: shines along the node's -z; neither intensity nor angles are scaled by the node.
-void Nodes::add_light(const Value &node, const glm::dmat4 &world, Scene &scene) {
+void Nodes::add_light(std::size_t number, const Value &node, Scene &scene) {
   const Value value = lights_[node.extension("KHR_lights_punctual")["light"].index(lights_.size(), "lights")];
   value.expect_object();
   value.check_extensions({});
@@ -377,7 +508,6 @@ void Nodes::add_light(const Value &node, const glm::dmat4 &world, Scene &scene) 
   else
     value["type"].fail(value["type"] ? "\"" + printable(type) + "\" is none of point, spot, directional" : "is missing");
   light.intensity = value["color"].factors(glm::vec3(1), 0, 1e18f) * value["intensity"].factor(1, 0, 1e18f);
-  light.position = glm::vec3(world[3]);
   if (light.kind == Light::Kind::spot) {
     const Value spot = value["spot"];
     spot.expect_object();
@@ -388,13 +518,23 @@ void Nodes::add_light(const Value &node, const glm::dmat4 &world, Scene &scene) 
       light.inner_angle = light.outer_angle * 0.999f;  // never equal: the fall-off divides by the difference of their cosines
     }
   }
-  if (light.kind != Light::Kind::point) {
-    const std::optional<glm::dvec3> direction = unit(-glm::dvec3(world[2]));
-    if (!direction) {
-      node.warn("its transform leaves a light no direction, so the light was left out");
-      return;
+  for (std::size_t key = 0; key < (moves(number) ? keys_.size() : 1); key++) {
+    const glm::dmat4 &place = world(number, key);
+    LightKey now{glm::vec3(place[3]), light.direction};
+    if (light.kind != Light::Kind::point) {
+      const std::optional<glm::dvec3> direction = unit(-glm::dvec3(place[2]));
+      if (!direction) {
+        node.warn("its transform leaves a light no direction, so the light was left out");
+        return;
+      }
+      now.direction = glm::vec3(*direction);
     }
-    light.direction = glm::vec3(*direction);
+    if (key > 0) {
+      light.keys.push_back(now);
+      continue;
+    }
+    light.position = now.position;
+    light.direction = now.direction;
   }
   scene.lights.push_back(std::move(light));
 }

@@ -22,10 +22,7 @@ glm::vec3 direction(const glm::dvec3 &v) {
   return length > 0 && std::isfinite(length) ? rounded(v / length) : glm::vec3(0);
 }
 
-// Weights and joints of the vertices: four a set, sets JOINTS_0, JOINTS_1, ... one after the other.
-struct Influences {
-  std::vector<std::vector<double>> joints, weights;
-};
+}  // namespace
 
 Influences read_influences(const Value &attributes, std::size_t vertices, Accessors &accessors) {
   Influences all;
@@ -46,8 +43,6 @@ Influences read_influences(const Value &attributes, std::size_t vertices, Access
     all.weights.push_back(accessors.numbers(weight));
   }
 }
-
-}  // namespace
 
 std::vector<std::size_t> read_joints(const Value &skin, std::size_t node_count) {
   skin.expect_object();
@@ -75,9 +70,8 @@ std::vector<glm::dmat4> joint_matrices(const Value &skin, const std::vector<glm:
   return matrices;
 }
 
-void apply_skin(const Value &attributes, const std::vector<glm::dmat4> &joints, Accessors &accessors, Primitive &primitive) {
+void apply_skin(const Value &attributes, const Influences &influences, const std::vector<glm::dmat4> &joints, Primitive &primitive) {
   const std::size_t vertices = primitive.positions.size();
-  const Influences influences = read_influences(attributes, vertices, accessors);
   if (influences.joints.empty()) attributes.warn("has no joints for its node's skin, so it is shown where it is stored");
   std::vector<bool> mirrored(vertices, false);
   for (std::size_t i = 0; i < vertices && !influences.joints.empty(); i++) {

@@ -13,6 +13,7 @@ namespace sunstone {
 struct ImportOptions {
   bool allow_outside = false;  // read resources outside the scene's own folder
   std::optional<double> time{};  // seconds, finite: the pose of `animation` then; without it the one that is stored
+  double shutter = 0;            // seconds from then on that the shutter is open, not negative
   std::string animation{};       // its name or number; empty: the first
 };
 

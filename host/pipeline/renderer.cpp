@@ -116,7 +116,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   s.film.x1 = settings.x1;
   s.film.y1 = settings.y1;
   s.film.scene_hash = scene.scene_hash.hex();
-  s.film.settings = film_settings(settings, camera);
+  s.film.settings = film_settings(settings, camera, scene.camera_keys);
   s.name_layers();
 
   kernel::Frame &frame = s.frame;
@@ -164,6 +164,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if (s.plan.bidirectional && s.tiles.size() > 1)
     throw Error("film", fmt::format("a picture of {}x{} does not fit on the device in one piece, and the light subpaths of --integrator {} may light any pixel", settings.width, settings.height, s.plan.name),
                 "use a smaller --size, fewer layers of --aov, or another --device");
+  if (scene.motion() > programs.variant.motion) throw std::logic_error("programs without motion");
   if (s.plan.bidirectional && !programs.variant.bidirectional) throw std::logic_error("programs without light subpaths");
   // An eye vertex sends a shadow ray to an emitter and to each light vertex.
   const unsigned light_vertices = s.plan.bidirectional ? std::max(2u, settings.max_depth) - 1 : 0, shadow_rays = s.plan.bidirectional ? light_vertices + 1 : settings.light_samples;
@@ -173,7 +174,13 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if (static_cast<std::uint64_t>(frame.pool) * light_vertices * SUN_LIGHT_VERTEX_RECORDS * 16 > SUN_NONE)
     throw UsageError("--pool " + std::to_string(frame.pool), "has more light vertices than 32 bits count", "use a smaller pool, or a smaller --max-depth");
   s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk, shadow_rays, branch_records, light_vertices);
-  s.device_frame = Buffer<kernel::Frame>(device, 1, "frame");
+  // The keys of a camera that moves stand behind the frame.
+  const std::size_t key_bytes = scene.camera_keys.size() * sizeof(kernel::Camera);
+  s.device_frame = Buffer<kernel::Frame>(device, 1 + (key_bytes + sizeof(kernel::Frame) - 1) / sizeof(kernel::Frame), "frame");
+  if (key_bytes) {
+    frame.flags |= SUN_FRAME_CAMERA_MOVES;
+    s.device_frame.write(scene.camera_keys.data(), key_bytes, sizeof(kernel::Frame));
+  }
   s.device_film = Buffer<std::int64_t>(
       device, s.film.layers.size() * static_cast<std::size_t>(s.tiles[0].width) * static_cast<std::size_t>(s.tiles[0].height) * SUN_FILM_CHANNELS * SUN_FILM_BINS, "film");
 }
@@ -390,6 +397,7 @@ void Renderer::show(const kernel::Camera &camera, float scale) {
   s.place_tile(s.tiles[0]);
   kernel::Frame frame = s.frame;
   frame.camera = camera;
+  frame.flags &= ~SUN_FRAME_CAMERA_MOVES;
   frame.sample_first = 0;
   s.device_frame.upload(std::span(&frame, 1));
   const DeviceScene &scene = s.scene;
@@ -411,9 +419,10 @@ std::size_t Renderer::pool_bytes() const {
   return p.paths.bytes() + p.status.bytes() + p.hits.bytes() + p.shadow_rays.bytes() + p.branches.bytes() + 2 * p.rays[0].bytes() + p.shadow_queue.bytes() + p.walks.bytes() + p.light_vertices.bytes();
 }
 
-std::map<std::string, std::string> film_settings(const RenderSettings &s, const kernel::Camera &camera) {
+std::map<std::string, std::string> film_settings(const RenderSettings &s, const kernel::Camera &camera, std::span<const kernel::Camera> camera_keys) {
   Hasher hasher;
   hasher.bytes(&camera, sizeof camera);
+  if (!camera_keys.empty()) hasher.span(camera_keys);
   std::map<std::string, std::string> all = {{"integrator", s.integrator},
           {"max_depth", std::to_string(s.max_depth)},
           {"roulette_depth", std::to_string(s.roulette_depth)},
@@ -424,6 +433,7 @@ std::map<std::string, std::string> film_settings(const RenderSettings &s, const 
           {"background", s.transparent_background ? "transparent" : "scene"},
           {"camera", hasher.digest().hex()}};
   if (s.time) all["time-at"] = fmt::format("{}", *s.time);
+  if (s.shutter > 0) all["shutter"] = fmt::format("{}", s.shutter);
   for (const std::string &flag : integrator(s.integrator).takes) {
     const std::string name = flag.substr(2);
     if (flag == "--end-on-light") all[name] = s.end_on_light ? "yes" : "no";

@@ -89,6 +89,6 @@ class Renderer {
 };
 
 // What decides the bits, for the film's header: refused to be mixed by merge and --resume.
-std::map<std::string, std::string> film_settings(const RenderSettings &settings, const kernel::Camera &camera);
+std::map<std::string, std::string> film_settings(const RenderSettings &settings, const kernel::Camera &camera, std::span<const kernel::Camera> camera_keys = {});
 
 }  // namespace sunstone

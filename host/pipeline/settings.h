@@ -29,6 +29,7 @@ struct RenderSettings {
   unsigned max_depth = 16, roulette_depth = 4;
   std::uint32_t seed = 0;
   std::optional<double> time;  // seconds into the animation, as the scene was imported
+  double shutter = 0;          // seconds that it is open from then on
   bool independent = false;  // sampler: plain hashes instead of Sobol'
   Filter filter;
   bool transparent_background = false;

@@ -13,7 +13,7 @@ namespace sunstone {
 namespace {
 
 Switches shading(const Variant &v) {
-  return {{"LANES", static_cast<int>(v.lanes)}, {"SUN_COLUMNS", v.columns}, {"SUN_SPECULAR", v.specular}, {"SUN_TEXTURES", v.textures}, {"SUN_SHAPES", v.shapes}};
+  return {{"LANES", static_cast<int>(v.lanes)}, {"SUN_COLUMNS", v.columns}, {"SUN_SPECULAR", v.specular}, {"SUN_TEXTURES", v.textures}, {"SUN_SHAPES", v.shapes}, {"SUN_MOTION", v.motion}};
 }
 Switches tracing(const Variant &v) {
   Switches switches = shading(v);
@@ -73,6 +73,7 @@ Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSetti
   variant.passable = scene.has_passable;
   variant.specular = scene.has_specular;
   variant.shapes = scene.shape_count > 0;
+  variant.motion = scene.motion();
   variant.textures = scene.has_textures;
   variant.branching = branches(settings);
   return variant;

@@ -22,6 +22,7 @@ struct Variant {
   bool columns = false;
   unsigned chunk = 1024;
   bool passable = true, specular = true, textures = true, shapes = true;
+  int motion = 2;  // FlatScene::motion
   bool branching = false;
   bool bidirectional = false;  // has the stages of light subpaths
   bool operator==(const Variant &) const = default;

@@ -51,14 +51,17 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
   frame.at_texture_refs = records.add(scene.texture_refs);
   frame.at_textures = records.add(scene.textures);
   frame.at_emitters = records.add(scene.emitters);
-  frame.at_lights = records.add(scene.lights);
+  std::vector<kernel::Light> lights = scene.lights;
+  lights.insert(lights.end(), scene.light_keys.begin(), scene.light_keys.end());
+  frame.at_lights = records.add(lights);
   frame.at_tables = records.add(tables);
   frame.at_environment_texels = records.add(scene.environment_texels);
   frame.at_environment_cdf = records.add(scene.environment_cdf);
   const std::vector<kernel::uint> &words = records.words();
 
+  const std::vector<kernel::Instance> instances = instances_with_keys(scene);
   std::size_t bytes = bytes_of(scene.tree.nodes) + bytes_of(scene.tree.leaves) + bytes_of(scene.fragments) + bytes_of(scene.vertices) + bytes_of(scene.vertex_extras) +
-                      bytes_of(scene.triangles) + bytes_of(scene.instances) + bytes_of(words);
+                      bytes_of(scene.triangles) + bytes_of(instances) + bytes_of(words);
   for (const auto &page : scene.texel_pages) bytes += bytes_of(page);
   if (bytes + device.allocated() > device.info().memory)
     throw Error(device.info().name, fmt::format("the scene needs {:.1f} MiB, the device has {:.1f} MiB", static_cast<double>(bytes) / 1048576.0,
@@ -74,7 +77,7 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
   on.vertices = Buffer<kernel::Vertex>(device, scene.vertices, "vertices");
   on.extras = Buffer<kernel::VertexExtra>(device, scene.vertex_extras, "vertex extras");
   on.triangles = Buffer<kernel::Triangle>(device, scene.triangles, "triangles");
-  on.instances = Buffer<kernel::Instance>(device, scene.instances, "instances");
+  on.instances = Buffer<kernel::Instance>(device, instances, "instances");
   on.records = Buffer<kernel::uint>(device, words, "tables of the scene");
   for (std::size_t i = 0; i < on.pages.size(); i++) on.pages[i] = Buffer<kernel::uint>(device, scene.texel_pages[i], fmt::format("texture page {}", i));
   on.top_root = scene.tree.top_root;
@@ -83,6 +86,7 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
   frame.emitter_count = static_cast<kernel::uint>(scene.emitters.size());
   frame.instance_count = static_cast<kernel::uint>(scene.instances.size() - scene.plane_count);
   frame.light_count = static_cast<kernel::uint>(scene.lights.size());
+  frame.motion_steps = scene.motion_steps;
   frame.plane_count = static_cast<kernel::uint>(scene.plane_count);
   if (scene.vertex_extras.size() == scene.vertices.size() && scene.vertices.size() > 0 && scene.has_textures) frame.flags |= SUN_FRAME_EXTRAS;
   if (!scene.bounds.empty()) {

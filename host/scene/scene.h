@@ -60,6 +60,12 @@ struct Material {
   TextureUse alpha_texture;               // r, linear: multiplies alpha (OBJ map_d)
 };
 
+// Vertices of a primitive that deforms, at one key of the shutter's time: arrays as the primitive has them.
+struct PrimitiveKey {
+  std::vector<glm::vec3> positions, normals;
+  std::vector<glm::vec4> tangents;
+};
+
 // One set of triangles with one material. Attribute arrays are empty or as long as `positions`.
 struct Primitive {
   int material = -1;  // into Scene::materials; -1: the default material
@@ -69,17 +75,24 @@ struct Primitive {
   std::vector<glm::vec2> uv[2];
   std::vector<glm::vec4> colors;    // linear
   std::vector<std::uint32_t> indices;  // 3 a triangle, always present
+  std::vector<PrimitiveKey> keys;      // Scene::motion_steps of them, or none
 };
 
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
+  bool deforms() const {
+    for (const Primitive &primitive : primitives)
+      if (!primitive.keys.empty()) return true;
+    return false;
+  }
 };
 
 struct Instance {
   std::string name;
   int mesh = -1;
   glm::mat4x3 transform{1};  // mesh -> world (glm: four columns of three)
+  std::vector<glm::mat4x3> keys{};  // Scene::motion_steps of them, or none
 };
 
 // A surface that is no mesh, in a space of its own: a sphere of radius 1 about the origin, or, in y = 0 with its front towards +y, a disk of radius 1, a
@@ -89,6 +102,11 @@ struct Shape {
   std::string name;
   int material = -1;  // into Scene::materials; -1: the default material
   glm::mat4x3 transform{1};
+  std::vector<glm::mat4x3> keys{};  // Scene::motion_steps of them, or none
+};
+
+struct LightKey {
+  glm::vec3 position, direction;
 };
 
 struct Light {
@@ -98,6 +116,7 @@ struct Light {
   glm::vec3 direction{0, 0, -1};  // that it shines to, unit length
   glm::vec3 intensity{1};         // W/sr, or W/m^2 (directional), the file's number as it is
   float inner_angle = 0, outer_angle = 0.7853982f;  // spot, radians from the axis
+  std::vector<LightKey> keys{};   // Scene::motion_steps of them, or none
 };
 
 struct Camera {
@@ -110,6 +129,7 @@ struct Camera {
   float half_width = 1;
   float lens_radius = 0;         // metres
   float focus_distance = 1;      // metres, used where lens_radius > 0
+  std::vector<glm::mat4x3> keys{};  // Scene::motion_steps of them, or none
 };
 
 struct Environment {
@@ -137,6 +157,9 @@ struct Scene {
   std::vector<Camera> cameras;
   Environment environment;
   std::vector<std::string> extensions;  // named by the file, for `info`
+  // While the shutter is open: its time is cut into so many equal steps, and what moves has a key at the end of each, beside what it is at the beginning of the first.
+  // Between two of them it moves in a straight line. A power of two; 0: everything is still.
+  unsigned motion_steps = 0;
 };
 
 }  // namespace sunstone

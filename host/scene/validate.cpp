@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/error.h"
+#include "shared/motion.h"
 
 namespace sunstone {
 
@@ -78,6 +79,7 @@ class Validator {
   Validator(Scene &scene, const std::string &file, Notices &notices) : scene_(scene), file_(file), notices_(notices) {}
 
   void run() {
+    if (scene_.motion_steps > SUN_MOST_MOTION_STEPS || (scene_.motion_steps & (scene_.motion_steps - 1))) fail("motion", std::to_string(scene_.motion_steps) + " steps of the shutter's time");
     images();
     materials();
     meshes();
@@ -202,6 +204,9 @@ class Validator {
     length(p.uv[0].size(), "texture coordinates");
     length(p.uv[1].size(), "texture coordinates of set 1");
     length(p.colors.size(), "colours");
+    key_count(p.keys.size(), where);
+    for (const PrimitiveKey &key : p.keys)
+      if (key.positions.size() != count || key.normals.size() != p.normals.size()) fail(where, "a key of its motion has another number of vertices");
     if (count > 0xffffffffu) fail(where, std::to_string(count) + " vertices are more than 2^32 - 1");
     if (p.indices.size() % 3 != 0) fail(where, std::to_string(p.indices.size()) + " indices are not a multiple of 3");
     for (const std::uint32_t i : p.indices)
@@ -210,7 +215,10 @@ class Validator {
     std::size_t out = 0;
     for (std::size_t t = 0; t + 2 < p.indices.size(); t += 3) {
       bool good = true;
-      for (int k = 0; k < 3; k++) good = good && usable(p.positions[p.indices[t + k]]);
+      for (int k = 0; k < 3; k++) {
+        good = good && usable(p.positions[p.indices[t + k]]);
+        for (const PrimitiveKey &key : p.keys) good = good && usable(key.positions[p.indices[t + k]]);
+      }
       if (!good) continue;
       for (int k = 0; k < 3; k++) p.indices[out + k] = p.indices[t + k];
       out += 3;
@@ -220,13 +228,17 @@ class Validator {
     if (out == 0) return dropped;
     for (glm::vec3 &position : p.positions)
       if (!usable(position)) position = p.positions[p.indices[0]];  // no triangle uses it: anywhere within the bounds
-    normals(p, where);
-    for (glm::vec4 &t : p.tangents) {
-      const float length2 = t.x * t.x + t.y * t.y + t.z * t.z;
-      if (length2 > 0.25f && length2 < 4.0f && (t.w == 1 || t.w == -1)) continue;
-      tally_.add("has tangents that are no unit vectors: they are made anew", where);
+    normals(p.positions, p.indices, p.normals, where);
+    for (PrimitiveKey &key : p.keys) {
+      for (glm::vec3 &position : key.positions)
+        if (!usable(position)) position = key.positions[p.indices[0]];
+      normals(key.positions, p.indices, key.normals, where);
+    }
+    bool good_tangents = unit_tangents(p.tangents);
+    for (const PrimitiveKey &key : p.keys) good_tangents = good_tangents && key.tangents.size() == p.tangents.size() && unit_tangents(key.tangents);
+    if (!good_tangents) {
+      if (!p.tangents.empty()) tally_.add("has tangents that are no unit vectors: they are made anew", where);
       p.tangents.clear();
-      break;
     }
     for (std::vector<glm::vec2> &set : p.uv)
       for (glm::vec2 &uv : set)
@@ -243,11 +255,23 @@ class Validator {
     return dropped;
   }
 
+  // All that moves has a key at the end of each step.
+  void key_count(std::size_t keys, const std::string &where) const {
+    if (keys != 0 && keys != scene_.motion_steps) fail(where, std::to_string(keys) + " keys of its motion, but the shutter's time has " + std::to_string(scene_.motion_steps) + " steps");
+  }
+
+  static bool unit_tangents(const std::vector<glm::vec4> &tangents) {
+    return std::all_of(tangents.begin(), tangents.end(), [](const glm::vec4 &t) {
+      const float length2 = t.x * t.x + t.y * t.y + t.z * t.z;
+      return length2 > 0.25f && length2 < 4.0f && (t.w == 1 || t.w == -1);
+    });
+  }
+
   // Brings normals to unit length; one without a direction takes that of the faces around it.
-  void normals(Primitive &p, const std::string &where) {
+  void normals(const std::vector<glm::vec3> &positions, const std::vector<std::uint32_t> &indices, std::vector<glm::vec3> &normals, const std::string &where) {
     std::vector<std::size_t> lost;
-    for (std::size_t i = 0; i < p.normals.size(); i++) {
-      glm::vec3 &n = p.normals[i];
+    for (std::size_t i = 0; i < normals.size(); i++) {
+      glm::vec3 &n = normals[i];
       const double length = usable(n) ? std::sqrt(double(n.x) * n.x + double(n.y) * n.y + double(n.z) * n.z) : 0;
       if (!(length > 1e-15))
         lost.push_back(i);
@@ -255,18 +279,18 @@ class Validator {
         n = glm::vec3(glm::dvec3(n) / length);
     }
     if (lost.empty()) return;
-    std::vector<glm::dvec3> sums(p.positions.size(), glm::dvec3(0));
-    for (std::size_t t = 0; t < p.indices.size(); t += 3) {
-      const glm::dvec3 a(p.positions[p.indices[t]]), b(p.positions[p.indices[t + 1]]), c(p.positions[p.indices[t + 2]]);
+    std::vector<glm::dvec3> sums(positions.size(), glm::dvec3(0));
+    for (std::size_t t = 0; t < indices.size(); t += 3) {
+      const glm::dvec3 a(positions[indices[t]]), b(positions[indices[t + 1]]), c(positions[indices[t + 2]]);
       const glm::dvec3 area = glm::cross(b - a, c - a);
-      for (int k = 0; k < 3; k++) sums[p.indices[t + k]] += area;
+      for (int k = 0; k < 3; k++) sums[indices[t + k]] += area;
     }
     for (const std::size_t i : lost) {
       const double length = glm::length(sums[i]);
-      p.normals[i] = length > 0 && std::isfinite(length) ? glm::vec3(sums[i] / length) : glm::vec3(0, 1, 0);
+      normals[i] = length > 0 && std::isfinite(length) ? glm::vec3(sums[i] / length) : glm::vec3(0, 1, 0);
     }
-    std::vector<bool> used(p.positions.size());
-    for (const std::uint32_t i : p.indices) used[i] = true;
+    std::vector<bool> used(positions.size());
+    for (const std::uint32_t i : indices) used[i] = true;
     if (std::any_of(lost.begin(), lost.end(), [&](std::size_t i) { return used[i]; }))
       tally_.add("has normals of no direction: made from the faces", where);
   }
@@ -274,17 +298,32 @@ class Validator {
   void instances() {
     std::size_t bad = 0;
     std::string first;
-    const auto unfit = [&](const Instance &instance) {
-      if (!finite(instance.transform) || singular(instance.transform)) return true;
-      for (const Primitive &p : scene_.meshes[instance.mesh].primitives)
+    const auto too_far = [&](const Instance &instance, const glm::mat4x3 &transform) {
+      if (!finite(transform)) return true;
+      for (const Primitive &p : scene_.meshes[instance.mesh].primitives) {
         for (const glm::vec3 &position : p.positions)
-          if (!usable(instance.transform * glm::vec4(position, 1))) return true;
+          if (!usable(transform * glm::vec4(position, 1))) return true;
+        for (const PrimitiveKey &key : p.keys)
+          for (const glm::vec3 &position : key.positions)
+            if (!usable(transform * glm::vec4(position, 1))) return true;
+      }
       return false;
+    };
+    // What moves may vanish for a moment, as it does where it grows from nothing.
+    const auto unfit = [&](const Instance &instance) {
+      if (too_far(instance, instance.transform)) return true;
+      bool vanishes = singular(instance.transform);
+      for (const glm::mat4x3 &key : instance.keys) {
+        if (too_far(instance, key)) return true;
+        vanishes = vanishes && singular(key);
+      }
+      return vanishes;
     };
     std::vector<Instance> kept;
     for (std::size_t i = 0; i < scene_.instances.size(); i++) {
       Instance &instance = scene_.instances[i];
-      const bool identity = instance.transform == glm::mat4x3(1);
+      key_count(instance.keys.size(), item("instances", i, instance.name));
+      const bool identity = instance.transform == glm::mat4x3(1) && instance.keys.empty();
       if (identity || !unfit(instance))
         kept.push_back(std::move(instance));
       else if (bad++ == 0)
@@ -304,7 +343,8 @@ class Validator {
       Shape &shape = scene_.shapes[i];
       const std::string where = item("shapes", i, shape.name);
       index(shape.material, scene_.materials.size(), true, where, "material");
-      if (!fits_shape(shape.transform)) {
+      key_count(shape.keys.size(), where);
+      if (!fits_shape(shape.transform) || !std::all_of(shape.keys.begin(), shape.keys.end(), fits_shape)) {
         if (bad++ == 0) first = where;
         continue;
       }
@@ -327,10 +367,15 @@ class Validator {
       Light &light = scene_.lights[i];
       const std::string where = item("lights", i, light.name);
       clamp(light.intensity, 0, largest_radiance, 0, "the intensity", where);
-      if (!usable(light.position)) fail(where, "its position is not finite");
-      const double length = usable(light.direction) ? glm::length(glm::dvec3(light.direction)) : 0;
-      if (!(length > 1e-15)) fail(where, "it shines in no direction");
-      if (std::abs(length - 1) > 1e-6) light.direction = glm::vec3(glm::dvec3(light.direction) / length);
+      const auto place = [&](const glm::vec3 &position, glm::vec3 &direction) {
+        if (!usable(position)) fail(where, "its position is not finite");
+        const double length = usable(direction) ? glm::length(glm::dvec3(direction)) : 0;
+        if (!(length > 1e-15)) fail(where, "it shines in no direction");
+        if (std::abs(length - 1) > 1e-6) direction = glm::vec3(glm::dvec3(direction) / length);
+      };
+      place(light.position, light.direction);
+      key_count(light.keys.size(), where);
+      for (LightKey &key : light.keys) place(key.position, key.direction);
       if (light.kind != Light::Kind::spot) continue;
       clamp(light.outer_angle, 1e-4f, 1.5707964f, 0.7853982f, "the outer angle of the cone", where);
       clamp(light.inner_angle, 0, light.outer_angle, 0, "the inner angle of the cone", where);
@@ -341,7 +386,9 @@ class Validator {
     for (std::size_t i = 0; i < scene_.cameras.size(); i++) {
       Camera &camera = scene_.cameras[i];
       const std::string where = item("cameras", i, camera.name);
-      if (!finite(camera.transform) || singular(camera.transform)) fail(where, "its transform is singular or not finite");
+      key_count(camera.keys.size(), where);
+      const auto bad = [](const glm::mat4x3 &transform) { return !finite(transform) || singular(transform); };
+      if (bad(camera.transform) || std::any_of(camera.keys.begin(), camera.keys.end(), bad)) fail(where, "its transform is singular or not finite");
       if (!camera.orthographic && !(camera.yfov > 0 && camera.yfov < 3.1415925f))
         fail(where, "a vertical angle of " + number(camera.yfov) + " radians");
       if (camera.aspect && !(*camera.aspect > 0 && *camera.aspect < 1e6f)) fail(where, "an aspect ratio of " + number(*camera.aspect));

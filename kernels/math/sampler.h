@@ -13,6 +13,7 @@ SUN_NAMESPACE_BEGIN
 // The table of dimensions. Each is a pair: sample_2d gives both numbers, sample_1d the first of them, so take one or the other.
 #define SUN_DIM_FILTER 0u          // place in the pixel's filter
 #define SUN_DIM_LENS 1u            // place on the lens
+#define SUN_DIM_TIME 0xffffffffu    // within the shutter's
 #define SUN_DIM_FIRST_VERTEX 2u
 #define SUN_DIM_PER_VERTEX 4u
 // Of path vertex v (0: the first hit); v is a uint_n or a uint.

@@ -3,6 +3,7 @@
 #ifndef SUN_PATH_PATH_H
 #define SUN_PATH_PATH_H
 #include "math/record.h"
+#include "math/sampler.h"
 #include "math/vector.h"
 #include "shared/path_words.h"
 #include "shared/queues.h"
@@ -68,6 +69,14 @@ SUN_FN void path_store(const Paths *paths, uint_n slots, mask active, const Path
   else
     store_records(paths->words, slots, active, words);
 }
+
+// The random numbers of samples of pixels, which count within the tile.
+SUN_FN SamplerKey pixel_key(const SUN_GLOBAL Frame *frame, uint_n pixel, uint_n sample) {
+  uint_n y = pixel / (uint_n)(frame->tile_width);
+  uint_n x = pixel - y * (uint_n)(frame->tile_width);
+  return sampler_key(frame->seed, x + (uint_n)(frame->tile_x0), y + (uint_n)(frame->tile_y0), sample, frame->sampler);
+}
+SUN_FN SamplerKey path_key(const SUN_GLOBAL Frame *frame, const Path *path) { return pixel_key(frame, path->pixel, path->sample); }
 
 SUN_NAMESPACE_END
 #endif

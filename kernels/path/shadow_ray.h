@@ -14,6 +14,7 @@ typedef struct ShadowLanes {
   real t_max;             // negative: none
   vec3 contribution;
   uint_n pixel, sample, depth, vertex, number;
+  real time;              // of the path, within the shutter's
 } ShadowLanes;
 
 SUN_FN void shadow_rays_store(SUN_GLOBAL ShadowRay *shadow_rays, uint_n index, mask stored, const ShadowLanes *ray) {
@@ -23,7 +24,7 @@ SUN_FN void shadow_rays_store(SUN_GLOBAL ShadowRay *shadow_rays, uint_n index, m
                       bits_of_real(ray->direction.z),    ray->pixel,                        bits_of_real(ray->contribution.x),
                       bits_of_real(ray->contribution.y), bits_of_real(ray->contribution.z), ray->sample,
                       ray->depth,                        ray->vertex,                       ray->number,
-                      (uint_n)(0)};
+                      bits_of_real(ray->time)};
   store_records((SUN_GLOBAL uint *)shadow_rays, index, stored, words);
 }
 

@@ -53,12 +53,12 @@ typedef struct LightSample {
   vec3 direction;  // to the light, unit length
   real distance;   // SUN_BEYOND for directional lights
   vec3 radiance;   // irradiance on a surface that faces the light; 0 outside a spot's cone
-  real spread;     // density by solid angle with which light_emission sends light here; 1 for directional lights, whose density is by area
+  real spread;     // density by solid angle with which emission_of_light sends light here; 1 for directional lights, whose density is by area
 } LightSample;
 
 // LANES records.
 typedef struct LightLanes {
-  uint_n kind;
+  uint_n kind, keys;  // where its keys stand; 0: it is still
   vec3 place, axis, intensity;
   real cos_outer, cos_inner;
 } LightLanes;
@@ -80,6 +80,8 @@ SUN_FN LightLanes load_lights(const SUN_GLOBAL Light *lights, uint_n light) {
   }
   LightLanes lanes;
   lanes.kind = LANES_LOAD(lane_kind);
+  lanes.keys = lanes.kind >> (uint_n)(SUN_LIGHT_KEYS_SHIFT);
+  lanes.kind = lanes.kind & (uint_n)(SUN_LIGHT_KIND);
   lanes.place = make_vec3(LANES_LOAD(field[0]), LANES_LOAD(field[1]), LANES_LOAD(field[2]));
   lanes.axis = make_vec3(LANES_LOAD(field[3]), LANES_LOAD(field[4]), LANES_LOAD(field[5]));
   lanes.intensity = make_vec3(LANES_LOAD(field[6]), LANES_LOAD(field[7]), LANES_LOAD(field[8]));
@@ -96,8 +98,8 @@ SUN_FN real spot_share(const LightLanes *l, real cosine) {
   return l->kind == (uint_n)(SUN_LIGHT_SPOT) ? ramp * ramp : (real)(1.0f);
 }
 
-SUN_FN LightSample light_sample(const SUN_GLOBAL Light *lights, uint_n light, vec3 position) {
-  LightLanes l = load_lights(lights, light);
+SUN_FN LightSample sample_of_light(const LightLanes *lanes, vec3 position) {
+  LightLanes l = *lanes;
   mask placed = l.kind != (uint_n)(SUN_LIGHT_DIRECTIONAL);
   vec3 to = sub3(l.place, position);
   real squared = dot3(to, to);
@@ -114,6 +116,11 @@ SUN_FN LightSample light_sample(const SUN_GLOBAL Light *lights, uint_n light, ve
   return sample;
 }
 
+SUN_FN LightSample light_sample(const SUN_GLOBAL Light *lights, uint_n light, vec3 position) {
+  LightLanes l = load_lights(lights, light);
+  return sample_of_light(&l, position);
+}
+
 // Light that leaves a punctual light.
 typedef struct LightEmission {
   vec3 origin, direction;
@@ -122,8 +129,8 @@ typedef struct LightEmission {
   mask far;        // directional: no origin, one direction
 } LightEmission;
 
-SUN_FN LightEmission light_emission(const SUN_GLOBAL Light *lights, uint_n light, vec2 u) {
-  LightLanes l = load_lights(lights, light);
+SUN_FN LightEmission emission_of_light(const LightLanes *lanes, vec2 u) {
+  LightLanes l = *lanes;
   LightEmission e;
   e.far = l.kind == (uint_n)(SUN_LIGHT_DIRECTIONAL);
   vec3 within = square_to_cone(u, light_cone_height(l.kind, l.cos_outer));

@@ -7,8 +7,6 @@
 
 SUN_NAMESPACE_BEGIN
 
-SUN_FN vec3 camera_vector(const SUN_GLOBAL float *v) { return make_vec3((real)(v[0]), (real)(v[1]), (real)(v[2])); }
-
 // Square metres of a pixel: a metre before the eye of a perspective camera, anywhere before an orthographic one.
 SUN_FN float pixel_area(const SUN_GLOBAL Frame *frame) {
   const SUN_GLOBAL Camera *c = &frame->camera;
@@ -19,10 +17,11 @@ SUN_FN float pixel_area(const SUN_GLOBAL Frame *frame) {
 
 // 1 / the density of camera_ray's directions (perspective, by solid angle, whatever the point of the lens) or origins (orthographic, by area), film positions
 // being drawn with density 1 a pixel.
-SUN_FN real inverse_camera_pdf(const SUN_GLOBAL Frame *frame, vec3 direction) {
+SUN_FN real inverse_camera_pdf(const SUN_GLOBAL Frame *frame, const Moment *moment, vec3 direction) {
   real area = (real)(pixel_area(frame));
   if (frame->camera.kind == SUN_CAMERA_ORTHOGRAPHIC) return area;
-  real cosine = dot3(direction, camera_vector(frame->camera.forward));
+  CameraLanes at = camera_at(frame, moment);
+  real cosine = dot3(direction, at.forward);
   return area * cosine * cosine * cosine;
 }
 
@@ -35,10 +34,11 @@ typedef struct LensSample {
 } LensSample;
 
 // A point of the lens, uniform in area as for camera rays, and where light from `from` through it falls.
-SUN_FN LensSample sample_lens(const SUN_GLOBAL Frame *frame, vec3 from, vec2 u) {
+SUN_FN LensSample sample_lens(const SUN_GLOBAL Frame *frame, const Moment *moment, vec3 from, vec2 u) {
   LensSample lens;
   const SUN_GLOBAL Camera *camera = &frame->camera;
-  vec3 position = camera_vector(camera->position), right = camera_vector(camera->right), up = camera_vector(camera->up), forward = camera_vector(camera->forward);
+  CameraLanes at = camera_at(frame, moment);
+  vec3 position = at.position, right = at.right, up = at.up, forward = at.forward;
   vec3 across = sub3(from, position);  // of the film position, times right and up
   real along = dot3(across, forward);
   lens.valid = along > 0.0f;

@@ -10,6 +10,7 @@
 #define SUN_SCENE_RAY_H
 #include "math/real.h"
 #include "shared/geometry.h"
+#include "shared/motion.h"
 #include "shared/types.h"
 
 SUN_NAMESPACE_BEGIN
@@ -27,6 +28,7 @@ typedef struct Ray {
   float t_max;
   float passed_t;
   uint passed_instance, passed_primitive;
+  float time;  // within the shutter's: 0 to below 1
 } Ray;
 
 #define SUN_INFINITY as_float(0x7f800000u)
@@ -126,6 +128,64 @@ SUN_INLINE void to_instance(const SUN_GLOBAL Instance *instance, const Ray *ray,
     origin[row] = fma(a, ray->origin[0], fma(b, ray->origin[1], fma(c, ray->origin[2], instance->to_object[4 * row + 3])));
     direction[row] = fma(a, ray->direction[0], fma(b, ray->direction[1], c * ray->direction[2]));
   }
+}
+
+// The place of a ray's time among the keys. `steps` is a power of two and times have 24 bits, so both are exact.
+typedef struct RayMoment {
+  uint step;
+  float blend;  // from that key to the next, below 1
+} RayMoment;
+
+SUN_INLINE RayMoment ray_moment(const SUN_GLOBAL Motion *motion, float time) {
+  const float scaled = time * (float)motion->steps;
+  RayMoment moment;
+  moment.step = (uint)scaled;
+  moment.blend = scaled - (float)moment.step;
+  return moment;
+}
+
+// Between two keys. One rounding, of what lies between them, so the result does: boxes around both keys hold it, as floats.
+SUN_INLINE float between_keys(float a, float b, float blend) { return fma(blend, b - a, a); }
+
+// a * b - c * d, to the last bits though it cancels [Kahan04].
+SUN_INLINE float difference_of_products(float a, float b, float c, float d) {
+  const float product = c * d, error = fma(-c, d, product);
+  return fma(a, b, -product) + error;
+}
+
+// A ray in the space of an instance that moves: the matrix of the ray's time is made from the keys, and inverted here. About the place of its origin, so that
+// distance from the world's does no harm. Where there is no inverse nothing is finite, and nothing is hit. linear: 3x3, row major.
+SUN_INLINE void to_moving_instance(const SUN_GLOBAL Motion *motion, uint flags, const Ray *ray, float *linear, float *origin, float *direction) {
+  const RayMoment moment = ray_moment(motion, ray->time);
+  const SUN_GLOBAL InstanceKey *key = (const SUN_GLOBAL InstanceKey *)(motion + 1) + (size_t)(flags >> SUN_INSTANCE_MOTION_SHIFT) * (motion->steps + 1u) + moment.step;
+  float m[12];
+  for (int k = 0; k < 12; k++) m[k] = between_keys(key[0].to_world[k], key[1].to_world[k], moment.blend);
+  for (int row = 0; row < 3; row++) {
+    const int r1 = row == 2 ? 0 : row + 1, r2 = row == 0 ? 2 : row - 1;
+    for (int column = 0; column < 3; column++) {
+      const int c1 = column == 2 ? 0 : column + 1, c2 = column == 0 ? 2 : column - 1;
+      linear[3 * column + row] = difference_of_products(m[4 * r1 + c1], m[4 * r2 + c2], m[4 * r1 + c2], m[4 * r2 + c1]);
+    }
+  }
+  const float determinant = fma(m[0], linear[0], fma(m[1], linear[3], m[2] * linear[6])), scale = 1.0f / determinant;
+  const float x = ray->origin[0] - m[3], y = ray->origin[1] - m[7], z = ray->origin[2] - m[11];
+  for (int row = 0; row < 3; row++) {
+    for (int column = 0; column < 3; column++) linear[3 * row + column] *= scale;
+    const float a = linear[3 * row], b = linear[3 * row + 1], c = linear[3 * row + 2];
+    origin[row] = fma(a, x, fma(b, y, c * z));
+    direction[row] = fma(a, ray->direction[0], fma(b, ray->direction[1], c * ray->direction[2]));
+  }
+}
+
+// A ray in an instance's space at the ray's time, and the linear part of what took it there.
+SUN_INLINE void to_space(const SUN_GLOBAL Motion *motion, const SUN_GLOBAL Instance *instance, const Ray *ray, float *linear, float *origin, float *direction) {
+  if (SUN_MOTION && (instance->flags & SUN_INSTANCE_MOVING)) {
+    to_moving_instance(motion, instance->flags, ray, linear, origin, direction);
+    return;
+  }
+  to_instance(instance, ray, origin, direction);
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 3; column++) linear[3 * row + column] = instance->to_object[4 * row + column];
 }
 
 SUN_NAMESPACE_END

@@ -3,6 +3,7 @@
 #ifndef SUN_SCENE_SCENE_H
 #define SUN_SCENE_SCENE_H
 #include "math/record.h"
+#include "scene/moment.h"
 #include "scene/texture.h"
 #include "shared/emitter.h"
 #include "shared/frame.h"
@@ -19,6 +20,8 @@ typedef struct Scene {
   const SUN_GLOBAL VertexExtra *extras;
   const SUN_GLOBAL Triangle *triangles;
   const SUN_GLOBAL Instance *instances;
+  const SUN_GLOBAL Motion *motion;
+  Moment moment;  // all questions are asked of the scene as it is then: see at_moment
   const SUN_GLOBAL uint *triangle_emitter;
   const SUN_GLOBAL uint *triangle_object, *instance_object;
   const SUN_GLOBAL Material *materials;
@@ -47,6 +50,8 @@ SUN_FN Scene open_scene(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS) {
   scene.extras = extras;
   scene.triangles = triangles;
   scene.instances = instances;
+  scene.motion = (const SUN_GLOBAL Motion *)(instances + frame->instance_count + frame->plane_count);
+  scene.moment = still_moment();
   scene.triangle_emitter = records + frame->at_triangle_emitter;
   scene.triangle_object = records + frame->at_triangle_object;
   scene.instance_object = records + frame->at_instance_object;
@@ -64,6 +69,9 @@ SUN_FN Scene open_scene(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS) {
   scene.pages.page[3] = page3;
   return scene;
 }
+
+// The scene at the time of LANES samples.
+SUN_FN void at_moment(Scene *scene, const SamplerKey *key) { scene->moment = sample_moment(scene->frame, key); }
 
 // A field of LANES records: GATHER_FLOAT(roughness, scene->materials, index, roughness).
 #define GATHER_FLOAT(out, records, index, field)                                    \

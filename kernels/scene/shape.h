@@ -45,9 +45,9 @@ SUN_INLINE int search_shape(const TraceScene *scene, uint number, const Ray *ray
     place.world = box_interval(world, instance->lower[0], instance->lower[1], instance->lower[2], instance->upper[0], instance->upper[1], instance->upper[2], 0.0f);
     if (!(place.world.near <= place.world.far)) return 0;
   }
-  float origin[3], direction[3], ts[2];
+  float linear[9], origin[3], direction[3], ts[2];
   int behind[2], count = 1;
-  to_instance(instance, ray, origin, direction);
+  to_space(scene->motion, instance, ray, linear, origin, direction);
   if (flags & SUN_INSTANCE_SPHERE) {
     if (!meet_sphere(origin, direction, &ts[0], &ts[1])) return 0;
     behind[0] = 0;

@@ -37,8 +37,12 @@ typedef struct Corners {
   real u[3];        // texture coordinate
   uint_n vertex[3];
   uint_n material;
-  uint_n flags;     // of the instance
+  uint_n flags;     // of the instance, mirrored as it is at the time
   mask moved;       // not the identity
+#if SUN_DEFORMING
+  mask deforms;
+  uint_n next;      // from a vertex of the key before to that of the key after
+#endif
 } Corners;
 
 SUN_INLINE void matrix_row(Matrix *matrix, int row, Quad quad) {
@@ -48,21 +52,60 @@ SUN_INLINE void matrix_row(Matrix *matrix, int row, Quad quad) {
   matrix->m[4 * row + 3] = real_of_bits(quad.w);
 }
 
-SUN_FN Matrix instance_to_world(const Scene *scene, uint_n instance) {
+// `flags`: of the instance.
+SUN_FN Matrix instance_to_world(const Scene *scene, uint_n instance, uint_n flags) {
   Matrix matrix;
   for (int row = 0; row < 3; row++) {
     Quad quad;
     GATHER_QUAD(quad, scene->instances, instance, to_world[4 * row]);
     matrix_row(&matrix, row, quad);
   }
+  mask moving = (flags & (uint_n)(SUN_INSTANCE_MOVING)) != (uint_n)(0);
+  if (SUN_MOTION && ANY(moving)) {
+    const SUN_GLOBAL InstanceKey *keys = (const SUN_GLOBAL InstanceKey *)(scene->motion + 1);
+    uint_n key = (flags >> (uint_n)(SUN_INSTANCE_MOTION_SHIFT)) * (uint_n)(scene->frame->motion_steps + 1u) + scene->moment.step;
+    key = moving ? key : (uint_n)(0);
+    Matrix before, after;
+    for (int row = 0; row < 3; row++) {
+      Quad quad;
+      GATHER_QUAD(quad, keys, key, to_world[4 * row]);
+      matrix_row(&before, row, quad);
+      GATHER_QUAD(quad, keys, key + (uint_n)(1), to_world[4 * row]);
+      matrix_row(&after, row, quad);
+    }
+    for (int k = 0; k < 12; k++) matrix.m[k] = moving ? blend_real(before.m[k], after.m[k], scene->moment.blend) : matrix.m[k];
+  }
   return matrix;
 }
-SUN_FN Matrix instance_to_object(const Scene *scene, uint_n instance) {
+
+// Areas and normals go by the cofactors: the inverse, transposed, times the determinant.
+SUN_FN real matrix_cofactor(const Matrix *matrix, int row, int column) {
+  const real *m = matrix->m;
+  int r1 = (row + 1) % 3, r2 = (row + 2) % 3, c1 = (column + 1) % 3, c2 = (column + 2) % 3;
+  return m[4 * r1 + c1] * m[4 * r2 + c2] - m[4 * r1 + c2] * m[4 * r2 + c1];
+}
+SUN_FN mask matrix_mirrors(const Matrix *matrix) {
+  const real *m = matrix->m;
+  return m[0] * matrix_cofactor(matrix, 0, 0) + m[1] * matrix_cofactor(matrix, 0, 1) + m[2] * matrix_cofactor(matrix, 0, 2) < 0.0f;
+}
+
+// The inverse; of an instance that moves its linear part alone, but for a positive factor.
+SUN_FN Matrix instance_to_object(const Scene *scene, uint_n instance, uint_n flags) {
   Matrix matrix;
   for (int row = 0; row < 3; row++) {
     Quad quad;
     GATHER_QUAD(quad, scene->instances, instance, to_object[4 * row]);
     matrix_row(&matrix, row, quad);
+  }
+  mask moving = (flags & (uint_n)(SUN_INSTANCE_MOVING)) != (uint_n)(0);
+  if (SUN_MOTION && ANY(moving)) {
+    Matrix to_world = instance_to_world(scene, instance, flags);
+    mask mirrored = matrix_mirrors(&to_world);
+    for (int row = 0; row < 3; row++)
+      for (int column = 0; column < 3; column++) {
+        real cofactor = matrix_cofactor(&to_world, column, row);
+        matrix.m[4 * row + column] = moving ? (mirrored ? -cofactor : cofactor) : matrix.m[4 * row + column];
+      }
   }
   return matrix;
 }
@@ -83,7 +126,7 @@ SUN_FN vec3 transform_normal(const Matrix *to_object, vec3 n) {
 
 // What a shape's point has in place of a triangle's; after load_corners, whose corners are all one for shapes.
 SUN_FN ShapePoint point_of_shape(const Scene *scene, uint_n instance, uint_n flags, vec3 place) {
-  Matrix matrix = instance_to_world(scene, instance);
+  Matrix matrix = instance_to_world(scene, instance, flags);
   ShapePoint point = shape_point(&matrix, flags, place);
 #if SUN_TEXTURES
   shape_coordinates(&point, flags, place);
@@ -103,18 +146,51 @@ SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitiv
   c.material = triangle.w;
   GATHER_UINT(c.flags, scene->instances, instance, flags);
   c.moved = (c.flags & (uint_n)(SUN_INSTANCE_IDENTITY)) == (uint_n)(0);
+#if SUN_DEFORMING
+  c.deforms = (c.flags & (uint_n)(SUN_INSTANCE_DEFORMING)) != (uint_n)(0);
+  c.next = (uint_n)(0);
+  if (ANY(c.deforms)) c.next = c.deforms ? (uint_n)(scene->motion->deforming) : (uint_n)(0);
+  for (int k = 0; k < 3; k++) c.vertex[k] = c.vertex[k] + c.next * scene->moment.step;
+#endif
   for (int k = 0; k < 3; k++) {
     Quad vertex;
     GATHER_QUAD(vertex, scene->vertices, c.vertex[k], position[0]);
     c.p[k] = make_vec3(real_of_bits(vertex.x), real_of_bits(vertex.y), real_of_bits(vertex.z));
     c.u[k] = real_of_bits(vertex.w);
+#if SUN_DEFORMING
+    if (ANY(c.deforms)) {
+      vec3 after;
+      GATHER_VEC3(after, scene->vertices, c.vertex[k] + c.next, position[0]);
+      c.p[k] = select3(c.deforms, blend3(c.p[k], after, scene->moment.blend), c.p[k]);
+    }
+#endif
   }
   if (ANY(c.moved)) {
-    Matrix matrix = instance_to_world(scene, instance);
+    Matrix matrix = instance_to_world(scene, instance, c.flags);
     for (int k = 0; k < 3; k++) c.p[k] = select3(c.moved, transform_point(&matrix, c.p[k]), c.p[k]);
+    if (SUN_MOTION) {
+      mask moving = (c.flags & (uint_n)(SUN_INSTANCE_MOVING)) != (uint_n)(0);
+      uint_n plain = c.flags & (uint_n)(~SUN_INSTANCE_MIRRORED);
+      c.flags = moving ? plain | (matrix_mirrors(&matrix) ? (uint_n)(SUN_INSTANCE_MIRRORED) : (uint_n)(0)) : c.flags;
+    }
   }
   return c;
 }
+
+// A vector of the corners, at the time.
+#if SUN_DEFORMING
+#define GATHER_CORNER(out, scene, c, k, records, field)                                         \
+  do {                                                                                          \
+    GATHER_VEC3(out, (scene)->records, (c)->vertex[k], field);                                  \
+    if (ANY((c)->deforms)) {                                                                    \
+      vec3 corner_after;                                                                        \
+      GATHER_VEC3(corner_after, (scene)->records, (c)->vertex[k] + (c)->next, field);           \
+      (out) = select3((c)->deforms, blend3((out), corner_after, (scene)->moment.blend), (out)); \
+    }                                                                                           \
+  } while (0)
+#else
+#define GATHER_CORNER(out, scene, c, k, records, field) GATHER_VEC3(out, (scene)->records, (c)->vertex[k], field)
+#endif
 
 // Out of the front: counter-clockwise in mesh space. Not normalised: its length is twice the area.
 SUN_FN vec3 corners_normal(const Corners *c) {
@@ -223,10 +299,10 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
 
   vec3 vertex_normal[3];
-  for (int k = 0; k < 3; k++) GATHER_VEC3(vertex_normal[k], scene->vertices, c.vertex[k], normal[0]);
+  for (int k = 0; k < 3; k++) GATHER_CORNER(vertex_normal[k], scene, &c, k, vertices, normal[0]);
   vec3 ns = interpolate3(vertex_normal[0], vertex_normal[1], vertex_normal[2], hit->u, hit->v);
   if (ANY(c.moved)) {
-    Matrix to_object = instance_to_object(scene, hit->instance);
+    Matrix to_object = instance_to_object(scene, hit->instance, c.flags);
     ns = select3(c.moved, transform_normal(&to_object, ns), ns);
   }
   real length2 = dot3(ns, ns);
@@ -258,11 +334,11 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
     if (ANY(mapped)) {
       vec3 corner_tangent[3];
       real handed;
-      for (int k = 0; k < 3; k++) GATHER_VEC3(corner_tangent[k], scene->extras, c.vertex[k], tangent[0]);
+      for (int k = 0; k < 3; k++) GATHER_CORNER(corner_tangent[k], scene, &c, k, extras, tangent[0]);
       GATHER_FLOAT(handed, scene->extras, c.vertex[0], tangent[3]);
       vec3 tangent = interpolate3(corner_tangent[0], corner_tangent[1], corner_tangent[2], hit->u, hit->v);
       if (ANY(c.moved)) {
-        Matrix to_world = instance_to_world(scene, hit->instance);
+        Matrix to_world = instance_to_world(scene, hit->instance, c.flags);
         tangent = select3(c.moved, transform_direction(&to_world, tangent), tangent);
       }
       mapped = mapped & (dot3(tangent, tangent) > 1e-30f);

@@ -33,6 +33,7 @@ SUN_INLINE TraceScene make_trace_scene(TREE_PARAMETERS, const SUN_GLOBAL Instanc
   scene.roots = roots;
   scene.fragments = fragments;
   scene.instances = instances;
+  scene.motion = (const SUN_GLOBAL Motion *)(instances + instance_count + plane_count);
   scene.top_root = top_root;
   scene.instance_count = instance_count;
   scene.plane_count = plane_count;
@@ -82,11 +83,17 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
   // A triangle nearer than the world box is pulled back into it, perhaps to behind what the ray passed; one that is not pulled keeps its own t.
   place->from = search->passed_t > place->world.near ? search->passed_t : 0.0f;
   if (!(place->world.near <= place->world.far)) return 0;
-  float origin[3], direction[3], reach[3], world_reach[3];
+  float origin[3], direction[3], linear[9], reach[3], world_reach[3];
   for (int axis = 0; axis < 3; axis++) world_reach[axis] = farther(instance->lower[axis], instance->upper[axis], ray->origin[axis]);
-  to_instance(instance, ray, origin, direction);
+#if SUN_DEFORMING
+  if (instance->flags & SUN_INSTANCE_DEFORMING) {
+    place->keys = scene->motion->steps + 1u;
+    place->moment = ray_moment(scene->motion, ray->time);
+  }
+#endif
+  to_space(scene->motion, instance, ray, linear, origin, direction);
   for (int row = 0; row < 3; row++) {
-    const float a = instance->to_object[4 * row], b = instance->to_object[4 * row + 1], c = instance->to_object[4 * row + 2];
+    const float a = linear[3 * row], b = linear[3 * row + 1], c = linear[3 * row + 2];
     // The mesh lies within its instance's world box, but for the rounding of both matrices.
     reach[row] = 1.0001f * fma(fabs(a), world_reach[0], fma(fabs(b), world_reach[1], fabs(c) * world_reach[2]));
   }

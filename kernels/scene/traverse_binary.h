@@ -15,6 +15,7 @@ typedef struct TraceScene {
   const SUN_GLOBAL uint *roots;
   const SUN_GLOBAL Fragment *fragments;
   const SUN_GLOBAL Instance *instances;
+  const SUN_GLOBAL Motion *motion;
   uint top_root;
   uint instance_count;
   uint plane_count;  // instances behind those
@@ -60,8 +61,8 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
       current = open_node(scene, first, ray, place->from, box_limit(place, search), stack, &size);
       if (current != SUN_NONE) continue;
     }
-    for (uint i = first; i < first + count; i++) {
-      const SUN_GLOBAL LeafTriangle *leaf = &scene->leaves[i];
+    for (uint i = 0; i < count; i++) {
+      const LeafAt leaf = leaf_at(scene->leaves, first, i, place);
       Pierced p;
       float t, u, v;
       uint primitive;

@@ -27,6 +27,7 @@ typedef struct TraceScene {
   const SUN_GLOBAL uint *roots;
   const SUN_GLOBAL Fragment *fragments;
   const SUN_GLOBAL Instance *instances;
+  const SUN_GLOBAL Motion *motion;
   uint top_root;
   uint instance_count;
   uint plane_count;  // instances behind those
@@ -189,7 +190,7 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
       current = any_one ? open_node_unsorted(node, ray, place->from, limit, stack, &size) : open_node(node, ray, place->from, limit, stack, &size);
       if (current != SUN_NONE) continue;
     } else {
-      const SUN_GLOBAL WidePack *pack = &scene->leaves[current & ~SUN_WIDE_LEAF];
+      const LeafAt pack = leaf_at(scene->leaves, current & ~SUN_WIDE_LEAF, 0, place);
       Pierced p;
       const int8 pierced = pierce(pack, ray, &p);
       if (TRI_ANY(pierced)) {

@@ -42,9 +42,9 @@ typedef int tri_int;
 typedef uint tri_uint;
 typedef LeafTriangle TraceLeaf;
 #define TRI_COUNT 1
-#define TRI_LOAD(leaf, k) ((leaf)->v[k])
-#define TRI_LOAD_ID(leaf) ((leaf)->id)
-#define TRI_CORNER(leaf, k, lane) ((void)(lane), (leaf)->v[k])
+#define TRI_READ(place, k) ((place)->v[k])
+#define TRI_READ_ID(place) ((place)->id)
+#define TRI_READ_CORNER(place, k, lane) ((void)(lane), (place)->v[k])
 #define TRI_ANY(m) (m)
 #define TRI_BYTES(m) ((ulong)((m) != 0))
 #define TRI_STORE(v, array) ((array)[0] = (v))
@@ -55,14 +55,30 @@ typedef int8 tri_int;
 typedef uint8 tri_uint;
 typedef WidePack TraceLeaf;
 #define TRI_COUNT SUN_PACK
-#define TRI_LOAD(leaf, k) vload8(0, (leaf)->v[k])
-#define TRI_LOAD_ID(leaf) vload8(0, (leaf)->id)
-#define TRI_CORNER(leaf, k, lane) ((leaf)->v[k][lane])
+#define TRI_READ(place, k) vload8(0, (place)->v[k])
+#define TRI_READ_ID(place) vload8(0, (place)->id)
+#define TRI_READ_CORNER(place, k, lane) ((place)->v[k][lane])
 #define TRI_STORE(v, array) vstore8((v), 0, (array))
 #define TRI_RELOAD(array) vload8(0, (array))
 // Not any(): PoCL makes a chain of branches of it.
 #define TRI_ANY(m) (as_ulong(convert_char8(m)) != 0)
 #define TRI_BYTES(m) bytes_of8(m)
+#endif
+
+// Triangles as a ray meets them. Where they deform a leaf stands in memory once for each key, and is read between two of them; leaves that do not deform are both.
+#if SUN_DEFORMING
+typedef struct LeafAt {
+  const SUN_GLOBAL TraceLeaf *at, *next;
+  float blend;
+} LeafAt;
+#define TRI_LOAD(leaf, k) (fma((tri_float)((leaf).blend), TRI_READ((leaf).next, k) - TRI_READ((leaf).at, k), TRI_READ((leaf).at, k)))
+#define TRI_LOAD_ID(leaf) TRI_READ_ID((leaf).at)
+#define TRI_CORNER(leaf, k, lane) between_keys(TRI_READ_CORNER((leaf).at, k, lane), TRI_READ_CORNER((leaf).next, k, lane), (leaf).blend)
+#else
+typedef const SUN_GLOBAL TraceLeaf *LeafAt;
+#define TRI_LOAD TRI_READ
+#define TRI_LOAD_ID TRI_READ_ID
+#define TRI_CORNER TRI_READ_CORNER
 #endif
 
 // Lanes of a comparison as bytes of 64-bit words, eight lanes a word: a portable road from a vector mask to its set lanes.
@@ -91,6 +107,10 @@ typedef struct Place {
   Interval world;        // of the instance's world box; [0, inf] for identity instances, whose box contains every triangle's
   float from;            // boxes with far < from hold nothing behind what the ray passed
   uint first_primitive;  // at t == passed_t hits count from this number on
+#if SUN_DEFORMING
+  uint keys;             // that each of its leaves has
+  RayMoment moment;
+#endif
 } Place;
 
 // An instance whose space is the world's.
@@ -104,7 +124,26 @@ SUN_INLINE Place place_in_world(uint number, const Search *search) {
   place.world.near = 0.0f;
   place.world.far = SUN_INFINITY;
   place.from = search->passed_t;
+#if SUN_DEFORMING
+  place.keys = 1;
+  place.moment.step = 0;
+  place.moment.blend = 0.0f;
+#endif
   return place;
+}
+
+// Leaf `number` of those that begin at `first`.
+SUN_INLINE LeafAt leaf_at(const SUN_GLOBAL TraceLeaf *leaves, uint first, uint number, const Place *place) {
+#if SUN_DEFORMING
+  LeafAt leaf;
+  leaf.at = leaves + first + number * place->keys + place->moment.step;
+  leaf.next = leaf.at + (place->keys > 1 ? 1 : 0);
+  leaf.blend = place->moment.blend;
+  return leaf;
+#else
+  (void)place;
+  return leaves + first + number;
+#endif
 }
 
 // Boxes of this instance with near > limit hold nothing that counts: every t there is clamped to at least that much, unless the world box pulls it
@@ -123,7 +162,7 @@ typedef struct Pierced {
 #define TRI_REMAINDER(a, b, c, d) (fma((a), (b), -((a) * (b))) - fma((c), (d), -((c) * (d))))
 
 // 1, but for the zeros, which pass as either sign: does the ray's line pass the triangle, on its edges included?
-SUN_INLINE tri_int pierce(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *ray, Pierced *p) {
+SUN_INLINE tri_int pierce(LeafAt leaf, const PreparedRay *ray, Pierced *p) {
   const int kx = ray->axis[0], ky = ray->axis[1], kz = ray->axis[2];
   const tri_float ox = (tri_float)(ray->origin[0]), oy = (tri_float)(ray->origin[1]), oz = (tri_float)(ray->origin[2]);
   const tri_float sx = (tri_float)(-ray->shear[0]), sy = (tri_float)(-ray->shear[1]);
@@ -145,7 +184,7 @@ SUN_INLINE tri_int pierce(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *r
 
 // The distance at which a ray passes a triangle, from areas with their remainders, clamped into the triangle's own box. `lost` where even those areas
 // drown in rounding: such a triangle is seen from its edge.
-SUN_INLINE float exact_distance(const SUN_GLOBAL TraceLeaf *leaf, int lane, const PreparedRay *ray, int *lost) {
+SUN_INLINE float exact_distance(LeafAt leaf, int lane, const PreparedRay *ray, int *lost) {
   float x[3], y[3], z[3], reach_x = 0.0f, reach_y = 0.0f;
   for (int corner = 0; corner < 3; corner++) {
     z[corner] = TRI_CORNER(leaf, 3 * corner + ray->axis[2], lane) - ray->origin[2];
@@ -181,7 +220,7 @@ SUN_INLINE Interval fragment_interval(const SUN_GLOBAL Fragment *f, const Prepar
 // 2 for a triangle in pieces that is seen nearly from its edge: t is found again with more care, and where that is no use, it is the nearest that any
 // piece makes of it. So some piece always holds it, as it does without this where t errs by less than the margins of slabs and pieces make up for
 // (docs/decisions/0002-hits.md).
-SUN_INLINE float grazed_distance(const SUN_GLOBAL TraceLeaf *leaf, int lane, const SUN_GLOBAL Fragment *fragments, uint primitive,
+SUN_INLINE float grazed_distance(LeafAt leaf, int lane, const SUN_GLOBAL Fragment *fragments, uint primitive,
                                  const PreparedRay *ray) {
   int lost;
   const float t = exact_distance(leaf, lane, ray, &lost);
@@ -211,7 +250,7 @@ typedef struct Distances {
 } Distances;
 
 // 2, for lanes that pierce() let through.
-SUN_INLINE Distances distances_of(const SUN_GLOBAL TraceLeaf *leaf, const PreparedRay *ray, const Pierced *p, tri_int pierced) {
+SUN_INLINE Distances distances_of(LeafAt leaf, const PreparedRay *ray, const Pierced *p, tri_int pierced) {
   Distances d;
   d.det = p->u + p->v + p->w;
   const tri_float inverse = 1.0f / d.det;
@@ -242,7 +281,7 @@ SUN_INLINE Distances distances_of(const SUN_GLOBAL TraceLeaf *leaf, const Prepar
 }
 
 // The lanes of `careful` again: edges get the exact sign of their zeros, triangles in pieces that are seen nearly from their edge their t.
-SUN_RARE void take_care(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, tri_int careful, Pierced *p,
+SUN_RARE void take_care(LeafAt leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, tri_int careful, Pierced *p,
                         Distances *d) {
   const int kx = ray->axis[0], ky = ray->axis[1];
   const tri_float ox = (tri_float)(ray->origin[0]), oy = (tri_float)(ray->origin[1]);
@@ -270,7 +309,7 @@ SUN_RARE void take_care(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragm
 
 // The rest of 1, and 2 to 5, for lanes that pierce() let through. t, u and v (of corners 1 and 2) and the primitive mean something where the result is
 // true.
-SUN_INLINE tri_int counts(const SUN_GLOBAL TraceLeaf *leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, const Place *place,
+SUN_INLINE tri_int counts(LeafAt leaf, const SUN_GLOBAL Fragment *fragments, const PreparedRay *ray, const Place *place,
                           const Search *search, const Pierced *p, tri_int pierced, tri_float *t_hit, tri_float *u_hit, tri_float *v_hit,
                           tri_uint *primitive_hit) {
   Distances d = distances_of(leaf, ray, p, pierced);

@@ -23,6 +23,8 @@ SUN_STATIC_ASSERT(sizeof(Emitter) == 32, emitter_is_32_bytes);
 #define SUN_LIGHT_POINT 0
 #define SUN_LIGHT_SPOT 1
 #define SUN_LIGHT_DIRECTIONAL 2
+#define SUN_LIGHT_KIND 0xffu
+#define SUN_LIGHT_KEYS_SHIFT 8  // the rest of `kind`: where the keys of a light that moves stand in Light[] (shared/motion.h); 0: it is still
 
 typedef struct Light {
   float position[3];

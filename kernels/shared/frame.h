@@ -38,6 +38,8 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 #define SUN_FRAME_BALANCE 256u     // bidirectional weights: the balance heuristic; else the power heuristic
 #define SUN_FRAME_UNWEIGHTED 512u  // each strategy by itself, as if there were no other
 #define SUN_FRAME_END_ON_LIGHT 64u // a path ends on the emitter that it hits
+#define SUN_FRAME_ONE_TIME 1024u   // all pixels take the same time of the shutter for the same sample number
+#define SUN_FRAME_CAMERA_MOVES 2048u  // cameras for all keys of the shutter's time stand behind the frame
 #define SUN_FRAME_EFFECTS 128u     // rays leave a vertex by effect: what facets reflect and what they transmit, each followed; nothing else is
 
 // How directions are drawn: as the bsdf asks, or without a look at it (what is no delta): with a cosine, or evenly.
@@ -90,7 +92,7 @@ typedef struct Frame {
   uint light_count;              // punctual ones, for integrators that ask each of them
   float cutoff;                  // a ray whose worth is below this is not followed
   float ambient[3];              // radiance that is about in all places, for what scatters it diffusely
-  uint pad;
+  uint motion_steps;             // keys less one while the shutter is open; 0: all is still
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 

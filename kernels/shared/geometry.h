@@ -42,6 +42,10 @@ SUN_STATIC_ASSERT(sizeof(VertexExtra) == 48, vertex_extra_is_48_bytes);
 #define SUN_INSTANCE_SHAPE 240u         // any of them; with these bits, as ids of triangles have them:
 #define SUN_INSTANCE_SINGLE_SIDED 256u
 #define SUN_INSTANCE_PASSABLE 512u
+#define SUN_INSTANCE_MOVING 1024u       // has keys (shared/motion.h); to_world is that of key 0, and the bounds are those of all of its way
+#define SUN_INSTANCE_DEFORMING 2048u    // its mesh's vertices have keys
+#define SUN_INSTANCE_MOTION_SHIFT 12    // the rest: its number among the moving ones
+#define SUN_MOST_MOVING_INSTANCES 1048576u
 // A plane ends so far from its origin, in units of its own: beyond, floats tell its points no longer apart.
 #define SUN_PLANE_REACH 1073741824.0f  // 2^30
 

@@ -36,6 +36,12 @@
 #define SUN_SHAPES 1
 #endif
 
+// 0 where the scene is still while the shutter is open; 1 where instances, lights or the camera move; 2 where vertices do, too.
+#ifndef SUN_MOTION
+#define SUN_MOTION 2
+#endif
+#define SUN_DEFORMING (SUN_MOTION > 1)
+
 // 1 where the scene has anything but diffuse surfaces; 1 where it has textures, or colours of vertices. 0 leaves the code out: compiled sooner, the same bits.
 #ifndef SUN_SPECULAR
 #define SUN_SPECULAR 1

@@ -65,7 +65,7 @@ typedef struct ShadowRay {
   uint depth;             // the layer it belongs to
   uint vertex;            // keys the random numbers of alpha along the ray
   uint number;            // among the shadow rays of this vertex
-  uint pad;
+  float time;             // of its path, within the shutter's
 } ShadowRay;
 SUN_STATIC_ASSERT(sizeof(ShadowRay) == 64, shadow_ray_is_64_bytes);
 

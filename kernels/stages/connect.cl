@@ -12,7 +12,7 @@
 #include "transport/step.h"
 
 // Appends a ray to those of its slot.
-SUN_FN void append_ray(const SUN_GLOBAL Frame *frame, SUN_GLOBAL ShadowRay *shadow_rays, uint_n slot, const Path *path, vec3 throughput, const Connection *c, uint_n depth,
+SUN_FN void append_ray(const Scene *scene, SUN_GLOBAL ShadowRay *shadow_rays, uint_n slot, const Path *path, vec3 throughput, const Connection *c, uint_n depth,
                        uint number, uint_n *shadows) {
   if (!ANY(c->valid)) return;
   ShadowLanes ray;
@@ -25,7 +25,8 @@ SUN_FN void append_ray(const SUN_GLOBAL Frame *frame, SUN_GLOBAL ShadowRay *shad
   ray.depth = depth;
   ray.vertex = path->vertex;
   ray.number = (uint_n)(number);
-  shadow_rays_store(shadow_rays, *shadows * (uint_n)(frame->pool) + slot, c->valid, &ray);
+  ray.time = scene->moment.time;
+  shadow_rays_store(shadow_rays, *shadows * (uint_n)(scene->frame->pool) + slot, c->valid, &ray);
   *shadows = *shadows + (c->valid ? (uint_n)(1) : (uint_n)(0));
 }
 
@@ -62,6 +63,7 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
   vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
   vec3 radiance = splat3((real)(0.0f)), arrived = throughput;
   SamplerKey key = path_key(frame, &path);
+  at_moment(&opened, &key);
 
   const SUN_GLOBAL Environment *environment = &frame->environment;
   mask escaped = active & !hit.hit;
@@ -117,7 +119,7 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       mask joins = scatters & !limited & !only_delta(&lobes);
       if (frame->emitter_count > 0 && ANY(joins)) {
         Connection c = connect_emitter(scene, &vertex, &there, sample_1d(&key, SUN_DIM_EMITTER(path.vertex)), sample_2d(&key, SUN_DIM_EMITTER_POINT(path.vertex)), joins);
-        append_ray(frame, shadow_rays, lanes.slot, &path, throughput, &c, depth + one, 0, &shadows);
+        append_ray(scene, shadow_rays, lanes.slot, &path, throughput, &c, depth + one, 0, &shadows);
         for (uint number = 0;; number++) {
           mask some = joins & ((uint_n)(number) < walk.vertices);
           if (!ANY(some)) break;
@@ -125,7 +127,7 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
           mask short_enough = some & (depth + y.depth + two <= (uint_n)(frame->max_depth));
           if (!ANY(short_enough)) continue;
           c = connect_vertices(scene, &vertex, &there, &y, short_enough);
-          append_ray(frame, shadow_rays, lanes.slot, &path, throughput, &c, depth + y.depth + two, number + 1, &shadows);
+          append_ray(scene, shadow_rays, lanes.slot, &path, throughput, &c, depth + y.depth + two, number + 1, &shadows);
         }
       }
       real u_lobe = sample_1d(&key, SUN_DIM_LOBE(path.vertex));

@@ -37,6 +37,7 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
   mask found = active & hit.hit;
   if (ANY(found)) {
     SamplerKey key = path_key(frame, &path);
+    at_moment(&opened, &key);
     vec3 wo = make_vec3(-path.direction_x, -path.direction_y, -path.direction_z);
     vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
     Surface surface = make_surface(scene, &hit, wo);
@@ -93,6 +94,7 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
         ray.depth = depth + one;
         ray.vertex = hash_step(key.pixel_hash, path.vertex);  // keys the rounding of the film: many light subpaths may meet in a pixel
         ray.number = zero;
+        ray.time = scene->moment.time;
         shadow_rays_store(shadow_rays, lanes.slot, seen, &ray);
         shadows = seen ? one : zero;
       }

@@ -37,18 +37,19 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
   y = turns ? y : number.y;
   uint_n sample = turns ? path.sample : number.sample;
   path = camera_path(frame, scene->tables, x, y, sample);
+  SamplerKey key = path_key(frame, &path);
+  at_moment(&opened, &key);
   mask looks = turns | inside;
   uint_n begun = (uint_n)(SUN_STATUS_ALIVE);
   vec3 camera_direction = make_vec3(path.direction_x, path.direction_y, path.direction_z);
   real subpaths = (real)((float)frame->width * (float)frame->height);
   walk.vertices = turns ? walk.vertices : (uint_n)(0);
   walk.emitted = walk.absorption = splat3((real)(0.0f));
-  walk.dVCM = heuristic_ratio(frame, subpaths * inverse_camera_pdf(frame, camera_direction));
+  walk.dVCM = heuristic_ratio(frame, subpaths * inverse_camera_pdf(frame, &scene->moment, camera_direction));
   walk.dVC = (real)(0.0f);
   mask never = looks & !looks;
   walk.far = frame->camera.kind == SUN_CAMERA_ORTHOGRAPHIC ? !never : never;
   if (ANY(inside) && frame->emitter_count > 0 && frame->max_depth > 0) {
-    SamplerKey key = path_key(frame, &path);
     uint_n vertex = (uint_n)(SUN_LIGHT_VERTEX);
     Emission e = sample_emission(scene, sample_1d(&key, SUN_DIM_EMITTER(vertex)), sample_1d(&key, SUN_DIM_LOBE(vertex)), sample_2d(&key, SUN_DIM_EMITTER_POINT(vertex)),
                                  sample_2d(&key, SUN_DIM_DIRECTION(vertex)), inside);

@@ -25,6 +25,8 @@ SUN_BODY void first_hit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, 
   Path path = path_load(&paths, lanes.slot);
   HitLanes hit = load_hits(hits, lanes.slot, active);
   if (!ANY(hit.hit)) return;
+  SamplerKey key = path_key(frame, &path);
+  at_moment(&opened, &key);
   vec3 wo = make_vec3(-path.direction_x, -path.direction_y, -path.direction_z);
   mask present = first_hit_layers(scene, &film, &path, &hit, wo, path.throughput_r);
   store_uint(status, lanes.slot, present, word | (uint_n)(SUN_STATUS_FIRST_HIT));

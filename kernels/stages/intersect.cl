@@ -5,20 +5,22 @@
 //   queues   rays
 //   holds    afterwards, but where a vertex is taken up again with the hit it had, each live slot's hit is the smallest (t, instance, primitive) behind what its ray passed, or a miss
 #include "path/path.h"
+#include "scene/moment.h"
 #include "scene/traverse.h"
 #include "shared/frame.h"
 
 // The ray of one path. Words that stand together are loaded together: piecemeal, compilers keep them in memory and reload them in
 // pairs, which waits for the stores.
-SUN_INLINE Ray path_ray(const Paths *paths, uint slot) {
-  uint word[12];
+SUN_INLINE Ray path_ray(const SUN_GLOBAL Frame *frame, const Paths *paths, uint slot) {
+  uint word[16];
 #if SUN_COLUMNS
-  for (uint field = 0; field < 12; field++) word[field] = paths->words[path_word(paths, slot, field)];
+  for (uint field = 0; field < (SUN_MOTION ? 16 : 12); field++) word[field] = paths->words[path_word(paths, slot, field)];
 #else
   const SUN_GLOBAL uint *record = paths->words + path_word(paths, slot, 0);
   vstore4(vload4(0, record), 0, word);
   vstore4(vload4(1, record), 1, word);
   vstore4(vload4(2, record), 2, word);
+  if (SUN_MOTION) vstore4(vload4(3, record), 3, word);
 #endif
   Ray ray;
   ray.origin[0] = as_float(word[SUN_PATH_origin_x]);
@@ -31,6 +33,13 @@ SUN_INLINE Ray path_ray(const Paths *paths, uint slot) {
   ray.passed_t = as_float(word[SUN_PATH_passed_t]);
   ray.passed_instance = word[SUN_PATH_passed_instance];
   ray.passed_primitive = word[SUN_PATH_passed_primitive];
+  ray.time = 0.0f;
+#if SUN_MOTION
+  const SamplerKey key = pixel_key(frame, word[SUN_PATH_pixel], word[SUN_PATH_sample]);
+  ray.time = sample_moment(frame, &key).time;
+#else
+  (void)frame;
+#endif
   return ray;
 }
 
@@ -46,7 +55,7 @@ SUN_BODY void intersect_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, cons
   Paths paths;
   paths.words = (SUN_GLOBAL uint *)path_words;
   paths.pool = frame->pool;
-  Ray ray = path_ray(&paths, slot);
+  Ray ray = path_ray(frame, &paths, slot);
   hits[slot] = closest_hit(&scene, ray, SUN_BIDIRECTIONAL && (word & SUN_STATUS_LIGHT) ? SUN_WANT_BOTH_SIDES : SUN_WANT_ALL);
 }
 

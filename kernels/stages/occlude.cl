@@ -26,10 +26,12 @@ SUN_BODY void occlude_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_
   if (ray.t_max < 0.0f) return;
   ray.passed_t = 0.0f;
   ray.passed_instance = ray.passed_primitive = SUN_NONE;
+  ray.time = shadow->time;
   if (any_hit(&tree, ray, SUN_WANT_OPAQUE)) return;
   vec3 worth = make_vec3(shadow->contribution[0], shadow->contribution[1], shadow->contribution[2]);
 #if SUN_PASSABLE
   Scene scene = open_scene(frame, SCENE_ARGUMENTS);
+  scene.moment = moment_of(frame, ray.time);
   vec3 wo = normalize3(make_vec3(-ray.direction[0], -ray.direction[1], -ray.direction[2]));
   for (;;) {
     Hit hit = closest_hit(&tree, ray, SUN_WANT_PASSABLE);

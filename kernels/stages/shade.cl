@@ -17,7 +17,7 @@
 #include "transport/scatter.h"
 
 SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, mask stored, const DirectSample *direct, vec3 worth, const Path *path,
-                              uint_n depth, uint number) {
+                              uint_n depth, uint number, real time) {
   ShadowLanes ray;
   ray.origin = direct->origin;
   ray.direction = direct->direction;
@@ -28,6 +28,7 @@ SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, m
   ray.depth = depth;
   ray.vertex = path->vertex;
   ray.number = (uint_n)(number);
+  ray.time = time;
   shadow_rays_store(shadow_rays, slots, stored, &ray);
 }
 
@@ -52,10 +53,8 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
   uint_n kept = word & (uint_n)(SUN_STATUS_FIRST_HIT);
   vec3 direction = make_vec3(path.direction_x, path.direction_y, path.direction_z);
   vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
-  uint_n picture_y = path.pixel / (uint_n)(frame->tile_width);
-  uint_n picture_x = path.pixel - picture_y * (uint_n)(frame->tile_width) + (uint_n)(frame->tile_x0);
-  picture_y = picture_y + (uint_n)(frame->tile_y0);
-  SamplerKey key = sampler_key(frame->seed, picture_x, picture_y, path.sample, frame->sampler);
+  SamplerKey key = path_key(frame, &path);
+  at_moment(&opened, &key);  // before branches have numbers of their own: a tree of rays has one time
 #if SUN_BRANCHING
   BranchState state = load_branch_state(frame, branches, lanes.slot);
   // A vertex that is taken up again: all it adds was added the first time; its next child is to come.
@@ -130,7 +129,7 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
           DirectSample direct = sample_direct(scene, &surface, &lobes, wo_local, u_choice, u_point, asks);
           vec3 worth = mul3(throughput, scale3(direct.contribution, share));
           store_shadow_rays(shadow_rays + (size_t)number * frame->pool, lanes.slot, rays_a_vertex > 1 ? asks : direct.valid, &direct, worth, &path,
-                            depth + (uint_n)(1), number);
+                            depth + (uint_n)(1), number, scene->moment.time);
           shadows = shadows + (direct.valid ? (uint_n)(1) : (uint_n)(0));
         }
       }

@@ -39,7 +39,7 @@ SUN_FN Branch select_branch(mask m, const Branch *a, const Branch *b) {
 
 // LANES rays, a lane at a time over the tree.
 typedef struct RayLanes {
-  float origin[3][LANES], direction[3][LANES], t_max[LANES], passed_t[LANES];
+  float origin[3][LANES], direction[3][LANES], t_max[LANES], passed_t[LANES], time[LANES];
   uint passed_instance[LANES], passed_primitive[LANES];
   int on[LANES];
 } RayLanes;
@@ -54,10 +54,11 @@ SUN_INLINE Ray lane_ray(const RayLanes *rays, int lane) {
   ray.passed_t = rays->passed_t[lane];
   ray.passed_instance = rays->passed_instance[lane];
   ray.passed_primitive = rays->passed_primitive[lane];
+  ray.time = rays->time[lane];
   return ray;
 }
 
-SUN_INLINE void store_rays(RayLanes *rays, vec3 origin, vec3 direction, real t_max, real passed_t, uint_n passed_instance, uint_n passed_primitive, mask on) {
+SUN_INLINE void store_rays(RayLanes *rays, vec3 origin, vec3 direction, real t_max, real passed_t, uint_n passed_instance, uint_n passed_primitive, real time, mask on) {
   int_n flags = on ? (int_n)(1) : (int_n)(0);
   LANES_STORE(origin.x, rays->origin[0]);
   LANES_STORE(origin.y, rays->origin[1]);
@@ -69,6 +70,7 @@ SUN_INLINE void store_rays(RayLanes *rays, vec3 origin, vec3 direction, real t_m
   LANES_STORE(passed_t, rays->passed_t);
   LANES_STORE(passed_instance, rays->passed_instance);
   LANES_STORE(passed_primitive, rays->passed_primitive);
+  LANES_STORE(time, rays->time);
   LANES_STORE(flags, rays->on);
 }
 
@@ -107,14 +109,14 @@ SUN_BODY mask blocked_lanes(const TraceScene *tree, const RayLanes *rays) {
 SUN_FN vec3 arriving(const Scene *scene, const TraceScene *tree, const DirectSample *direct) {
   RayLanes rays;
   uint_n none = (uint_n)(SUN_NONE);
-  store_rays(&rays, direct->origin, direct->direction, direct->t_max, (real)(0.0f), none, none, direct->valid);
+  store_rays(&rays, direct->origin, direct->direction, direct->t_max, (real)(0.0f), none, none, scene->moment.time, direct->valid);
   mask open = direct->valid & !blocked_lanes(tree, &rays);
   vec3 worth = select3(open, direct->contribution, splat3((real)(0.0f)));
   vec3 wo = normalize3(negate3(direct->direction));
   real passed_t = (real)(0.0f);
   uint_n passed_instance = none, passed_primitive = none;
   while (SUN_PASSABLE && ANY(open)) {
-    store_rays(&rays, direct->origin, direct->direction, direct->t_max, passed_t, passed_instance, passed_primitive, open);
+    store_rays(&rays, direct->origin, direct->direction, direct->t_max, passed_t, passed_instance, passed_primitive, scene->moment.time, open);
     HitLanes hit;
     closest_lanes(tree, &rays, SUN_WANT_PASSABLE, &hit);
     open = open & hit.hit;
@@ -156,7 +158,7 @@ SUN_BODY vec3 walk_trees(const Scene *scene, const TraceScene *tree, const FilmV
   while (ANY(active)) {
     RayLanes rays;
     HitLanes hit;
-    store_rays(&rays, now.origin, now.direction, (real)(SUN_INFINITY), now.passed_t, now.passed_instance, now.passed_primitive, active);
+    store_rays(&rays, now.origin, now.direction, (real)(SUN_INFINITY), now.passed_t, now.passed_instance, now.passed_primitive, scene->moment.time, active);
     closest_lanes(tree, &rays, SUN_WANT_ALL, &hit);
     hit.hit = active & hit.hit;
     if (film)
@@ -307,6 +309,7 @@ SUN_BODY void whitted_bundle(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCE
   place.inside = place.inside & wanted;
   uint traced[3] = {0, 0, 0};  // rays of trees, shadow rays, trees
   SamplerKey key = sampler_key(frame->seed, place.picture_x, place.picture_y, place.sample, frame->sampler);
+  at_moment(&scene, &key);
   CameraRay ray = camera_ray(frame, scene.tables, &key, place.picture_x, place.picture_y);
   walk_trees(&scene, &tree, &film, &place, &key, &ray, place.inside, traced);
   atomic_add(counts + SUN_COUNT_RAYS + 1, traced[0] - traced[2]);  // camera rays are counted as paths
@@ -331,6 +334,7 @@ SUN_BODY void whitted_view_bundle(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS
   TraceScene tree = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count, frame->plane_count);
   PathNumber place = path_number(frame, (uint_n)(first) + uint_of_int((int_n)(LANE_NUMBERS)));
   SamplerKey key = sampler_key(frame->seed, place.picture_x, place.picture_y, place.sample, frame->sampler);
+  at_moment(&scene, &key);
   CameraRay ray = camera_ray_at(frame, &key, real_of_uint(place.picture_x) + 0.5f, real_of_uint(place.picture_y) + 0.5f);
   vec3 seen = scale3(walk_trees(&scene, &tree, 0, &place, &key, &ray, place.inside, 0), (real)(scale));
   uint_n color = srgb_byte(seen.x) | (srgb_byte(seen.y) << (uint_n)(8)) | (srgb_byte(seen.z) << (uint_n)(16)) | (uint_n)(0xff000000u);

@@ -122,7 +122,7 @@ SUN_FN Splat connect_lens(const Scene *scene, const LightVertex *y, vec2 u_lens,
   const SUN_GLOBAL Frame *frame = scene->frame;
   Splat splat;
   Connection *c = &splat.ray;
-  LensSample lens = sample_lens(frame, y->at.position, u_lens);
+  LensSample lens = sample_lens(frame, &scene->moment, y->at.position, u_lens);
   FilmChoice column = choose_film_pixel(frame, scene->tables, lens.film_x, u_pixel);
   FilmChoice row = choose_film_pixel(frame, scene->tables, lens.film_y, column.rest);
   mask within = (column.pixel >= 0) & (column.pixel < (int_n)((int)frame->width)) & (row.pixel >= 0) & (row.pixel < (int_n)((int)frame->height));

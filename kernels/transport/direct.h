@@ -19,6 +19,19 @@ typedef struct DirectSample {
   mask valid;
 } DirectSample;
 
+// Punctual lights at the scene's moment.
+SUN_FN LightLanes lights_at(const Scene *scene, uint_n light) {
+  LightLanes lanes = load_lights(scene->lights, light);
+  mask moves = lanes.keys != (uint_n)(0);
+  if (SUN_MOTION && ANY(moves)) {
+    uint_n key = moves ? lanes.keys + scene->moment.step : light;
+    LightLanes before = load_lights(scene->lights, key), after = load_lights(scene->lights, moves ? key + (uint_n)(1) : light);
+    lanes.place = select3(moves, blend3(before.place, after.place, scene->moment.blend), lanes.place);
+    lanes.axis = select3(moves, normalize3(blend3(before.axis, after.axis, scene->moment.blend)), lanes.axis);
+  }
+  return lanes;
+}
+
 // A point on LANES emissive triangles, uniform in area.
 typedef struct EmitterPoint {
   vec3 target;       // in front of the emitter by its own offset
@@ -132,7 +145,8 @@ SUN_FN EmitterSample sample_emitter(const Scene *scene, const Surface *s, real u
     direction = select3(is_triangle, normalize3(sub3(point.target, s->position)), direction);
   }
   if (ANY(is_light)) {
-    LightSample light = light_sample(scene->lights, is_light ? choice.a : (uint_n)(0), s->position);
+    LightLanes lanes = lights_at(scene, is_light ? choice.a : (uint_n)(0));
+    LightSample light = sample_of_light(&lanes, s->position);
     emission = select3(is_light, light.radiance, emission);
     mask placed = is_light & (light.distance < SUN_FAR);
     target = select3(placed, add3(s->position, scale3(light.direction, placed ? light.distance : (real)(0.0f))), target);
@@ -199,7 +213,8 @@ SUN_FN DirectSample direct_of(const Scene *scene, const Surface *s, const Lobes 
 
 // A ray to one punctual light, wherever it is seen from: its pdf is 1.
 SUN_FN DirectSample direct_from_light(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, uint light, mask active) {
-  LightSample of_light = light_sample(scene->lights, (uint_n)(light), s->position);
+  LightLanes lanes = lights_at(scene, (uint_n)(light));
+  LightSample of_light = sample_of_light(&lanes, s->position);
   EmitterSample sample;
   sample.emission = of_light.radiance;
   sample.has_target = of_light.distance < SUN_FAR;

@@ -57,7 +57,8 @@ SUN_FN Emission sample_emission(const Scene *scene, real u_choice, real u_side, 
   }
   real disk_area = (real)(SUN_PI * frame->scene_radius * frame->scene_radius);
   if (ANY(is_light)) {
-    LightEmission light = light_emission(scene->lights, is_light ? choice.a : (uint_n)(0), u_direction);
+    LightLanes lanes = lights_at(scene, is_light ? choice.a : (uint_n)(0));
+    LightEmission light = emission_of_light(&lanes, u_direction);
     vec3 from_disk = disk_origin(frame, negate3(light.direction), u_point);
     e.far = e.far | (is_light & light.far);
     real pdf = light.far ? 1.0f / disk_area : light.pdf;

@@ -5,6 +5,7 @@
 #include "math/sampler.h"
 #include "path/contribute.h"
 #include "path/path.h"
+#include "scene/camera.h"
 #include "scene/surface.h"
 
 SUN_NAMESPACE_BEGIN
@@ -23,9 +24,7 @@ SUN_FN void layer_add(const FilmView *film, uint layer, mask active, const Path 
 SUN_FN mask first_hit_layers(const Scene *scene, const FilmView *film, const Path *path, const HitLanes *hit, vec3 wo, real weight) {
   const SUN_GLOBAL Frame *frame = scene->frame;
   Surface surface = make_surface(scene, hit, wo);
-  uint_n y = path->pixel / (uint_n)(frame->tile_width);
-  uint_n x = path->pixel - y * (uint_n)(frame->tile_width);
-  SamplerKey key = sampler_key(frame->seed, x + (uint_n)(frame->tile_x0), y + (uint_n)(frame->tile_y0), path->sample, frame->sampler);
+  SamplerKey key = path_key(frame, path);
   real alpha = surface_alpha(scene, &surface, hit->hit);
   mask absent = (alpha < 1.0f) & (alpha <= hash_coin(&key, path->vertex, hit->instance, hit->primitive, 0));
   mask present = hit->hit & !absent;
@@ -37,9 +36,8 @@ SUN_FN mask first_hit_layers(const Scene *scene, const FilmView *film, const Pat
   if (frame->layer_albedo != SUN_NONE) layer_add(film, frame->layer_albedo, present, path, key.pixel_hash, scale3(bsdf_albedo(&bsdf, scene->tables, wo_local), weight));
   layer_add(film, frame->layer_normal, present, path, key.pixel_hash, scale3(surface.shading.normal, weight));
   // Along the camera's axis, as compositors expect of Z.
-  vec3 eye = make_vec3((real)(frame->camera.position[0]), (real)(frame->camera.position[1]), (real)(frame->camera.position[2]));
-  vec3 forward = make_vec3((real)(frame->camera.forward[0]), (real)(frame->camera.forward[1]), (real)(frame->camera.forward[2]));
-  layer_add(film, frame->layer_depth, present, path, key.pixel_hash, splat3(dot3(sub3(surface.position, eye), forward) * weight));
+  CameraLanes camera = camera_at(frame, &scene->moment);
+  layer_add(film, frame->layer_depth, present, path, key.pixel_hash, splat3(dot3(sub3(surface.position, camera.position), camera.forward) * weight));
   layer_add(film, frame->layer_position, present, path, key.pixel_hash, scale3(surface.position, weight));
   layer_add(film, frame->layer_alpha, present, path, key.pixel_hash, splat3(weight));
   // Numbers cannot be averaged: they are those of sample 0, counted from 1, so that 0 is nothing. Objects are the scene's instances.

@@ -7,12 +7,6 @@
 
 SUN_NAMESPACE_BEGIN
 
-SUN_FN SamplerKey path_key(const SUN_GLOBAL Frame *frame, const Path *path) {
-  uint_n y = path->pixel / (uint_n)(frame->tile_width);
-  uint_n x = path->pixel - y * (uint_n)(frame->tile_width);
-  return sampler_key(frame->seed, x + (uint_n)(frame->tile_x0), y + (uint_n)(frame->tile_y0), path->sample, frame->sampler);
-}
-
 // Where the surface is a partly transparent one that is not there for this path: a coin that belongs to the triangle decides.
 SUN_FN mask surface_absent(const Scene *scene, const Surface *s, const HitLanes *hit, const SamplerKey *key, uint_n vertex, mask found) {
   real alpha = surface_alpha(scene, s, found);

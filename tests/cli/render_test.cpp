@@ -162,6 +162,18 @@ TEST(Render, FramesAreThePicturesOfTheirTimes) {
   go({"--frames", "3:5", "--fps", "1", "--samples", "0:4", "-o", "end.film"});
   EXPECT_EQ(read_film(folder / "end.0003.film").scene_hash, read_film(folder / "end.0004.film").scene_hash);
   EXPECT_NE(merge("end.0003.film", "end.0004.film").find("time-at is 3"), std::string::npos);
+  // A shutter that is closed, or open while all keeps still, changes no bit; over motion it does, in frames as in a picture of the same time.
+  go({"--time-at", "1", "--shutter", "0", "-o", "closed.film"});
+  go({"--time-at", "1", "--shutter", "0.5", "-o", "open.film"});
+  go({"--frames", "10:11", "--fps", "10", "--shutter", "0.5", "-o", "blurred.film"});
+  go({"--time-at", "3", "--shutter", "0.5", "-o", "still.film"});
+  EXPECT_EQ(hash_of(folder, "closed.film"), hash_of(folder, "at-1.film"));
+  EXPECT_EQ(hash_of(folder, "still.film"), hash_of(folder, "end.0003.film"));
+  EXPECT_NE(hash_of(folder, "open.film"), hash_of(folder, "at-1.film"));
+  EXPECT_EQ(hash_of(folder, "blurred.0010.film"), hash_of(folder, "open.film"));
+  EXPECT_EQ(read_film(folder / "open.film").settings.at("shutter"), "0.5");
+  EXPECT_EQ(read_film(folder / "still.film").scene_hash, read_film(folder / "end.0003.film").scene_hash);
+  EXPECT_NE(merge("still.film", "end.0003.film").find("shutter"), std::string::npos);
 }
 
 TEST(Render, CheckpointAndResumeEqualOneRun) {

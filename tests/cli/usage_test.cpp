@@ -121,6 +121,8 @@ TEST(Usage, FlagsOfOneIntegrator) {
 TEST(Usage, TimesAndFrames) {
   for (const char *time : {"", "soon", "nan", "inf", "-1e10", "1,2"}) expect_refusal({"render", cornell, "--time-at", time}, 2, "--time-at");
   expect_refusal({"info", cornell, "--time-at", "nan"}, 2, "--time-at");
+  for (const char *open : {"", "long", "nan", "inf", "-0.1", "1,2"}) expect_refusal({"render", cornell, "--time-at", "0", "--shutter", open}, 2, "--shutter");
+  for (const char *command : {"render", "info"}) expect_refusal({command, cornell, "--shutter", "0.5"}, 2, "--time-at SECONDS");
   for (const char *command : {"render", "info"}) {
     expect_refusal({command, cornell, "--animation", "walk"}, 2, "--time-at SECONDS");
     expect_refusal({command, cornell, "--animation", "walk", "--time-at", "1"}, 2, "has no animation");

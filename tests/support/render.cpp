@@ -20,7 +20,7 @@ namespace {
 // What outlives a test: opened devices and compiled programs. Leaked on purpose, since a driver may be gone before static objects are destroyed.
 struct Kept {
   std::map<std::size_t, Device> devices;
-  std::map<std::tuple<std::size_t, unsigned, Layout, bool, unsigned, unsigned>, std::unique_ptr<Programs>> programs;
+  std::map<std::tuple<std::size_t, unsigned, Layout, bool, unsigned, unsigned, int>, std::unique_ptr<Programs>> programs;
 };
 
 Kept &kept() {
@@ -30,7 +30,7 @@ Kept &kept() {
 
 const Programs &programs_for(const Variant &v, std::size_t work_group) {
   const unsigned features = (v.passable ? 1u : 0u) | (v.specular ? 2u : 0u) | (v.textures ? 4u : 0u) | (v.branching ? 8u : 0u) | (v.bidirectional ? 16u : 0u) | (v.shapes ? 32u : 0u);
-  auto &found = kept().programs[{work_group, v.lanes, v.layout, v.columns, v.chunk, features}];
+  auto &found = kept().programs[{work_group, v.lanes, v.layout, v.columns, v.chunk, features, v.motion}];
   if (!found) found = std::make_unique<Programs>(test_device(work_group), v);
   return *found;
 }
@@ -43,6 +43,7 @@ Variant variant_of(const Case &scene, const RenderSettings &settings, const Ways
   v.columns = ways.columns.value_or(v.columns);
   v.chunk = ways.chunk.value_or(v.chunk);
   v.branching = branches(settings);
+  v.motion = ways.motion.value_or(scene.flat(v.layout).motion());
   return ways.trimmed ? scene_variant(v, scene.flat(v.layout), settings) : v;
 }
 
@@ -80,6 +81,8 @@ const FlatScene &Case::flat(Layout layout) const {
 }
 
 kernel::Camera Case::camera(int width, int height) const {
+  if (!scene_.cameras.empty())
+    for (auto &[layout, flat] : flat_) flat.camera_keys = flatten_camera_keys(scene_.cameras[0], width, height, flatten_camera);
   if (scene_.cameras.empty()) return flatten_camera(default_camera(scene_, static_cast<float>(width) / static_cast<float>(height)), width, height);
   return flatten_camera(scene_.cameras[0], width, height);
 }
@@ -97,8 +100,8 @@ Filter box_filter() { return {Filter::Kind::box, 0.5f}; }
 
 Rendered render(const Case &scene, const RenderSettings &settings, SampleRange samples, const Ways &ways, const std::function<bool(const RenderProgress &)> &progress) {
   const Variant variant = variant_of(scene, settings, ways);
-  Renderer renderer(test_device(ways.work_group), programs_for(variant, ways.work_group), scene.flat(variant.layout), scene.camera(settings.width, settings.height),
-                    settings, Tuning{ways.pool, variant.lanes});
+  const FlatScene &flat = scene.flat(variant.layout);
+  Renderer renderer(test_device(ways.work_group), programs_for(variant, ways.work_group), flat, scene.camera(settings.width, settings.height), settings, Tuning{ways.pool, variant.lanes});
   renderer.render(samples, progress);
   return {renderer.film(), renderer.counts()};
 }

@@ -19,6 +19,7 @@ struct Ways {
   std::optional<unsigned> lanes, chunk;
   std::optional<Layout> layout;
   std::optional<bool> columns;
+  std::optional<int> motion;  // SUN_MOTION of the programs; as the scene needs
   std::size_t work_group = 0;
   bool trimmed = false;  // code that the scene does not need is left out, as the command does; otherwise one set of programs serves all scenes
 };
@@ -33,7 +34,7 @@ class Case {
   static Case file(const std::filesystem::path &path);
   const Scene &scene() const { return scene_; }
   const FlatScene &flat(Layout layout) const;
-  kernel::Camera camera(int width, int height) const;
+  kernel::Camera camera(int width, int height) const;  // where it moves, what flat() gave gets its keys
 
  private:
   Scene scene_;

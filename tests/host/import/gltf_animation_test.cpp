@@ -6,6 +6,7 @@
 
 #include "gltf_builder.h"
 #include "import/gltf_curves.h"
+#include "shared/motion.h"
 
 namespace sunstone::test {
 namespace {
@@ -352,6 +353,110 @@ TEST(GltfSkins, JointsOutsideTheScene) {
   const Scene scene = b.import();
   ASSERT_EQ(scene.instances.size(), 1u);
   expect_near(scene.meshes[0].primitives[0].positions[2], {3, 1, 0}, 0);
+}
+
+// What an open shutter sees: keys of all that moves, as many as the way needs.
+Scene seen(GltfBuilder b, double time, double shutter) {
+  b.options.time = time;
+  b.options.shutter = shutter;
+  return b.import();
+}
+
+TEST(Shutter, StraightWaysTakeOneStep) {
+  const GltfBuilder b = animated<float>("translation", "LINEAR", {0, 2}, "VEC3", {0, 0, 0, 4, 2, 0});
+  const Scene scene = seen(b, 0.5, 1);
+  EXPECT_EQ(scene.motion_steps, 1u);
+  const Instance &instance = scene.instances.at(0);
+  ASSERT_EQ(instance.keys.size(), 1u);
+  expect_near(instance.transform[3], {1, 0.5f, 0});
+  expect_near(instance.keys[0][3], {3, 1.5f, 0});
+  EXPECT_EQ(instance.keys[0][0], glm::vec3(1, 0, 0));
+  // The opening of the shutter is the still picture; closed, or while nothing moves, it is that alone.
+  EXPECT_EQ(instance.transform, at(b, 0.5).instances[0].transform);
+  EXPECT_EQ(at(b, 0.5).motion_steps, 0u);
+  for (const Scene &still : {seen(b, 0.5, 0), seen(b, 2, 5), seen(b, -3, 3)}) {
+    EXPECT_EQ(still.motion_steps, 0u);
+    EXPECT_TRUE(still.instances.at(0).keys.empty());
+  }
+}
+
+// A corner on the way, at an eighth of the shutter's time: eight steps have a key there.
+TEST(Shutter, CornersOfTheWay) {
+  const Scene scene = seen(animated<float>("translation", "LINEAR", {0, 1, 8}, "VEC3", {0, 0, 0, 1, 0, 0, 1, 7, 0}), 0, 8);
+  EXPECT_EQ(scene.motion_steps, 8u);
+  expect_near(scene.instances.at(0).keys.at(0)[3], {1, 0, 0});
+  expect_near(scene.instances[0].keys.at(7)[3], {1, 7, 0});
+  // A jump takes as many as there are.
+  EXPECT_EQ(seen(animated<float>("translation", "STEP", {0, 0.3f}, "VEC3", {0, 0, 0, 1, 0, 0}), 0, 1).motion_steps, unsigned{SUN_MOST_MOTION_STEPS});
+}
+
+// Between keys a turn is a straight line; nowhere is it off by more than a thousandth.
+TEST(Shutter, TurnsAreCutIntoSmallSteps) {
+  std::vector<float> turn;
+  for (const double degrees : {0.0, 90.0})
+    for (int k = 0; k < 4; k++) turn.push_back(static_cast<float>(about_z(degrees)[k]));
+  const GltfBuilder b = animated<float>("rotation", "LINEAR", {0, 1}, "VEC4", turn);
+  const Scene scene = seen(b, 0, 1);
+  EXPECT_GE(scene.motion_steps, 16u);
+  EXPECT_LE(scene.motion_steps, 32u);
+  std::vector<glm::mat4x3> keys = scene.instances.at(0).keys;
+  keys.insert(keys.begin(), scene.instances[0].transform);
+  for (int i = 0; i < 200; i++) {
+    const double time = (i + 0.5) / 200, scaled = time * scene.motion_steps;
+    const auto step = static_cast<std::size_t>(scaled);
+    const glm::mat4x3 between = keys[step] + (keys[step + 1] - keys[step]) * static_cast<float>(scaled - static_cast<double>(step)), real = at(b, time).instances.at(0).transform;
+    for (int column = 0; column < 4; column++) expect_near(between[column], real[column], 1.1e-3f);
+  }
+}
+
+TEST(Shutter, MorphTargetsAndSkins) {
+  GltfBuilder b = animated<float>("weights", "LINEAR", {0, 1}, "SCALAR", {0, 0, 2, 1});
+  add_targets(b);
+  const Scene morphed = seen(b, 0.5, 0.25);
+  EXPECT_EQ(morphed.motion_steps, 1u);
+  EXPECT_TRUE(morphed.instances.at(0).keys.empty());
+  const Primitive &p = morphed.meshes.at(0).primitives.at(0);
+  ASSERT_EQ(p.keys.size(), 1u);
+  expect_near(p.positions[0], {0, 0, 1});
+  expect_near(p.keys[0].positions[0], {0, 0, 1.5f});
+  expect_near(p.keys[0].positions[2], {3, 1, 1.5f});
+  // Two nodes that show it share it; one that has weights of its own does not move with it.
+  b.root["nodes"].push_back({{"mesh", 0}, {"weights", {0.25, 0}}});
+  b.root["scenes"][0]["nodes"] = {0, 1};
+  const Scene two = seen(b, 0.5, 0.25);
+  ASSERT_EQ(two.meshes.size(), 2u);
+  EXPECT_TRUE(two.meshes[1].primitives.at(0).keys.empty());
+
+  GltfBuilder skin = skinned();
+  const int input = skin.accessor<float>("SCALAR", {0, 1}), output = skin.accessor<float>("VEC3", {0, 1, 0, 0, 5, 0});
+  skin.root["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "translation"}}}}}}, {"samplers", {{{"input", input}, {"output", output}}}}}};
+  const Scene bent = seen(skin, 0, 1);
+  EXPECT_EQ(bent.motion_steps, 1u);
+  EXPECT_TRUE(bent.instances.at(0).keys.empty()) << "joints alone say where it is";
+  const Primitive &q = bent.meshes.at(0).primitives.at(0);
+  ASSERT_EQ(q.keys.size(), 1u);
+  expect_near(q.positions[2], {0, 1, 0});
+  expect_near(q.keys[0].positions[2], {0, 5, 0});
+  expect_near(q.keys[0].positions[1], {1, 0, 0});
+}
+
+TEST(Shutter, CamerasLightsAndShapes) {
+  GltfBuilder b = animated<float>("translation", "LINEAR", {0, 1}, "VEC3", {0, 0, 0, 2, 0, 0});
+  b.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
+  b.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "spot"}}}}}}};
+  b.root["extensionsUsed"] = {"KHR_lights_punctual"};
+  b.root["nodes"][0]["children"] = {1};  // what hangs below it moves with it
+  b.root["nodes"].push_back({{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}, {"extras", {{"sunstone_shape", {{"type", "disk"}, {"radius", 3}}}}}});
+  const Scene scene = seen(b, 0, 0.5);
+  ASSERT_EQ(scene.motion_steps, 1u);
+  ASSERT_EQ(scene.cameras.at(0).keys.size(), 1u);
+  expect_near(scene.cameras[0].keys[0][3], {1, 0, 0});
+  ASSERT_EQ(scene.lights.at(0).keys.size(), 1u);
+  expect_near(scene.lights[0].keys[0].position, {1, 0, 0});
+  expect_near(scene.lights[0].keys[0].direction, {0, 0, -1});
+  ASSERT_EQ(scene.shapes.at(0).keys.size(), 1u);
+  expect_near(scene.shapes[0].keys[0][0], {3, 0, 0});
+  expect_near(scene.shapes[0].keys[0][3], {1, 0, 0});
 }
 
 TEST(GltfSkins, BrokenOnesAreRefusedByNameAndPlace) {

@@ -19,6 +19,7 @@ Ray kernel_ray(const TracedRay &from) {
   ray.passed_t = from.ray.passed_t;
   ray.passed_instance = from.passed_instance;
   ray.passed_primitive = from.passed_primitive;
+  ray.time = from.time;
   return ray;
 }
 
@@ -26,7 +27,8 @@ Ray kernel_ray(const TracedRay &from) {
 struct Bare {
   BinaryNode root{};
   TraceScene scene{};
-  explicit Bare(const FlatScene &from) {
+  std::vector<kernel::Instance> instances;
+  explicit Bare(const FlatScene &from) : instances(instances_with_keys(from)) {
     std::fill_n(root.lower, 3, INFINITY);
     std::fill_n(root.upper, 3, -INFINITY);
     for (const kernel::Instance &instance : from.instances)
@@ -35,7 +37,8 @@ struct Bare {
         root.upper[axis] = std::max(root.upper[axis], instance.upper[axis]);
       }
     scene.nodes = &root;
-    scene.instances = from.instances.data();
+    scene.instances = instances.data();
+    scene.motion = reinterpret_cast<const Motion *>(instances.data() + from.instances.size());
     scene.instance_count = uint(from.instances.size());
   }
 };
@@ -53,15 +56,20 @@ void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell
     uint next = mesh.first_fragment;  // in the order of their triangles
     const uint last = next + mesh.fragment_count;
     for (uint k = mesh.first_triangle; k < mesh.first_triangle + mesh.triangle_count; k++) {
-      LeafTriangle leaf;
-      for (int corner = 0; corner < 3; corner++) std::copy_n(flat.vertices[flat.triangles[k].vertex[corner]].position, 3, leaf.v + 3 * corner);
+      // Before and after the ray's time.
+      LeafTriangle leaves[2];
+      for (uint key = 0; key < 2; key++) {
+        const std::size_t first = mesh.deforms ? (place.moment.step + key) * flat.deforming : 0;
+        for (int corner = 0; corner < 3; corner++) std::copy_n(flat.vertices[first + flat.triangles[k].vertex[corner]].position, 3, leaves[key].v + 3 * corner);
+      }
+      const LeafAt leaf{&leaves[0], &leaves[1], place.moment.blend};
       const auto try_leaf = [&](uint id) {
-        leaf.id = id;
+        leaves[0].id = id;
         Pierced pierced;
         float t, u, v;
         uint primitive;
-        if (pierce(&leaf, &inside, &pierced) &&
-            counts(&leaf, flat.fragments.data(), &inside, &place, &search, &pierced, 1, &t, &u, &v, &primitive))
+        if (pierce(leaf, &inside, &pierced) &&
+            counts(leaf, flat.fragments.data(), &inside, &place, &search, &pierced, 1, &t, &u, &v, &primitive))
           tell(search, place, t, u, v, primitive);
       };
       bool in_pieces = false;
@@ -71,9 +79,9 @@ void each_hit(const FlatScene &flat, const Ray &ray, Search &search, Tell &&tell
   }
 }
 
-TraceScene tree_scene(const FlatScene &scene, const Tree &tree) {
+TraceScene tree_scene(const FlatScene &scene, const Tree &tree, const std::vector<kernel::Instance> &instances) {
   return make_trace_scene(reinterpret_cast<const uchar *>(tree.nodes.data()), reinterpret_cast<const uchar *>(tree.leaves.data()),
-                          tree.instance_list.data(), tree.roots.data(), tree.top_root, scene.fragments.data(), scene.instances.data(), uint(scene.instances.size() - scene.plane_count), uint(scene.plane_count));
+                          tree.instance_list.data(), tree.roots.data(), tree.top_root, scene.fragments.data(), instances.data(), uint(scene.instances.size() - scene.plane_count), uint(scene.plane_count));
 }
 
 }  // namespace
@@ -104,12 +112,14 @@ std::vector<Hit> all_hits(const FlatScene &scene, const TracedRay &from, uint wa
 }
 
 Hit host_closest(const FlatScene &scene, const Tree &binary, const TracedRay &ray, uint want) {
-  const TraceScene trace = tree_scene(scene, binary);
+  const std::vector<kernel::Instance> instances = instances_with_keys(scene);
+  const TraceScene trace = tree_scene(scene, binary, instances);
   return closest_hit(&trace, kernel_ray(ray), want);
 }
 
 bool host_any(const FlatScene &scene, const Tree &binary, const TracedRay &ray, uint want) {
-  const TraceScene trace = tree_scene(scene, binary);
+  const std::vector<kernel::Instance> instances = instances_with_keys(scene);
+  const TraceScene trace = tree_scene(scene, binary, instances);
   return any_hit(&trace, kernel_ray(ray), want) != 0;
 }
 

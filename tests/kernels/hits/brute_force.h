@@ -11,6 +11,7 @@ namespace sunstone::hits {
 struct TracedRay {
   TraceRay ray;
   kernel::uint passed_instance = SUN_NONE, passed_primitive = SUN_NONE;
+  float time = 0;  // of the shutter's
 };
 
 kernel::Hit brute_force(const FlatScene &scene, const TracedRay &ray, kernel::uint want);

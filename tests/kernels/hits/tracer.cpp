@@ -31,7 +31,7 @@ void Tracer::load(const FlatScene &scene) {
   list_ = Buffer<uint>(device_, std::span<const uint>(tree.instance_list), "instance list");
   roots_ = Buffer<uint>(device_, std::span<const uint>(tree.roots), "roots");
   fragments_ = Buffer<kernel::Fragment>(device_, std::span<const kernel::Fragment>(scene.fragments), "fragments");
-  instances_ = Buffer<kernel::Instance>(device_, std::span<const kernel::Instance>(scene.instances), "instances");
+  instances_ = Buffer<kernel::Instance>(device_, std::span<const kernel::Instance>(instances_with_keys(scene)), "instances");
   top_root_ = tree.top_root;
   instance_count_ = uint(scene.instances.size() - scene.plane_count);
   plane_count_ = uint(scene.plane_count);
@@ -50,7 +50,7 @@ std::vector<T> Tracer::run(const char *name, std::span<const TracedRay> rays, ui
   const Buffer<T> result(device_, rays.size(), "result");
   Kernel kernel(program_, name);
   kernel.run(rays.size(), ray_buffer, passed_buffer, result, uint(rays.size()), want, nodes_, leaves_, list_, roots_, top_root_, fragments_, instances_,
-             instance_count_, plane_count_);
+             instance_count_, plane_count_, rays.empty() ? 0.0f : rays[0].time);
   return result.download();
 }
 

@@ -16,6 +16,7 @@ std::optional<Device> test_device();
 class Tracer {
  public:
   Tracer(const Device &device, const FlatScene &scene, Layout layout);
+  // All rays have the time of the first.
   std::vector<kernel::Hit> closest(std::span<const TracedRay> rays, kernel::uint want = 0) const;
   std::vector<kernel::uint> any(std::span<const TracedRay> rays, kernel::uint want = 0) const;
   // Another scene, in the programs that are built already.
