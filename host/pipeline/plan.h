@@ -22,6 +22,7 @@ struct Plan {
   std::vector<std::string> takes;    // flags of its own
   std::string leaves_out;            // light that it does not follow, and who does
   bool bidirectional = false;        // slots walk a light subpath first: shared/bidirectional.h
+  bool one_time = false;             // vertices of several pixels meet: all pixels take the shutter's time of a sample from its number alone
 };
 
 std::span<const Plan> integrators();

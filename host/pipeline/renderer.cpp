@@ -135,6 +135,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if (s.plan.direct) frame.flags |= SUN_FRAME_DIRECT;
   if (s.plan.weighted) frame.flags |= SUN_FRAME_WEIGHTED;
   if (s.plan.effects) frame.flags |= SUN_FRAME_EFFECTS;
+  if (s.plan.one_time) frame.flags |= SUN_FRAME_ONE_TIME;
   if (settings.nee_first) frame.flags |= SUN_FRAME_FIRST;
   if (settings.double_count) frame.flags |= SUN_FRAME_TWICE;
   if (settings.end_on_light) frame.flags |= SUN_FRAME_END_ON_LIGHT;

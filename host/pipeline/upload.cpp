@@ -59,7 +59,9 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
   frame.at_environment_cdf = records.add(scene.environment_cdf);
   const std::vector<kernel::uint> &words = records.words();
 
-  const std::vector<kernel::Instance> instances = instances_with_keys(scene);
+  std::vector<kernel::Instance> with_keys;
+  if (scene.motion_steps) with_keys = instances_with_keys(scene);
+  const std::vector<kernel::Instance> &instances = scene.motion_steps ? with_keys : scene.instances;
   std::size_t bytes = bytes_of(scene.tree.nodes) + bytes_of(scene.tree.leaves) + bytes_of(scene.fragments) + bytes_of(scene.vertices) + bytes_of(scene.vertex_extras) +
                       bytes_of(scene.triangles) + bytes_of(instances) + bytes_of(words);
   for (const auto &page : scene.texel_pages) bytes += bytes_of(page);

@@ -71,7 +71,9 @@ SUN_FN Scene open_scene(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS) {
 }
 
 // The scene at the time of LANES samples.
-SUN_FN void at_moment(Scene *scene, const SamplerKey *key) { scene->moment = sample_moment(scene->frame, key); }
+SUN_FN void at_moment(Scene *scene, const SamplerKey *key) {
+  if (SUN_MOTION) scene->moment = sample_moment(scene->frame, key);
+}
 
 // A field of LANES records: GATHER_FLOAT(roughness, scene->materials, index, roughness).
 #define GATHER_FLOAT(out, records, index, field)                                    \

@@ -54,7 +54,7 @@ SUN_INLINE Ray lane_ray(const RayLanes *rays, int lane) {
   ray.passed_t = rays->passed_t[lane];
   ray.passed_instance = rays->passed_instance[lane];
   ray.passed_primitive = rays->passed_primitive[lane];
-  ray.time = rays->time[lane];
+  ray.time = SUN_MOTION ? rays->time[lane] : 0.0f;
   return ray;
 }
 
@@ -70,7 +70,7 @@ SUN_INLINE void store_rays(RayLanes *rays, vec3 origin, vec3 direction, real t_m
   LANES_STORE(passed_t, rays->passed_t);
   LANES_STORE(passed_instance, rays->passed_instance);
   LANES_STORE(passed_primitive, rays->passed_primitive);
-  LANES_STORE(time, rays->time);
+  if (SUN_MOTION) LANES_STORE(time, rays->time);
   LANES_STORE(flags, rays->on);
 }
 

@@ -27,3 +27,17 @@ interpret branching "$root/scenes/cornell/cornell.gltf" --size 8x8 --spp 1 --max
 interpret bdpt "$root/scenes/first-picture/first-picture.glb" --integrator bdpt --size 8x8 --spp 1 --max-depth 2 --aov all
 interpret shapes "$root/scenes/whitted/whitted.gltf" --size 8x8 --spp 1 --max-depth 2 --env 0.3,0.5,0.8
 interpret whitted "$root/scenes/whitted/whitted.gltf" --size 8x8 --spp 1 --max-depth 3 --integrator whitted --env 0.3,0.5,0.8 --ambient 0.1,0.1,0.1
+interpret motion "$root/scenes/cook/cook.gltf" --size 8x8 --spp 1 --max-depth 2 --time-at 0 --shutter 0.25
+interpret motion-bdpt "$root/scenes/cook/cook.gltf" --size 8x8 --spp 1 --max-depth 2 --time-at 0 --shutter 0.25 --integrator bdpt
+# A triangle that deforms, and glows.
+cat > morph.gltf <<'SCENE'
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "targets": [{"POSITION": 1}], "material": 0}]}],
+ "materials": [{"doubleSided": true, "emissiveFactor": [0.5, 0.5, 0.5]}],
+ "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}], "samplers": [{"input": 2, "output": 3}]}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}, {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3"},
+               {"bufferView": 0, "byteOffset": 72, "componentType": 5126, "count": 2, "type": "SCALAR"}, {"bufferView": 0, "byteOffset": 80, "componentType": 5126, "count": 2, "type": "SCALAR"}],
+ "bufferViews": [{"buffer": 0, "byteLength": 88}],
+ "buffers": [{"byteLength": 88, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAAAAAAPwAAAAAAAAAAAAAAAAAAAD8AAAAAAAAAAAAAAAAAAAA/AAAAAAAAgD8AAAAAAACAPw=="}]}
+SCENE
+interpret deforming morph.gltf --size 8x8 --spp 1 --max-depth 2 --time-at 0 --shutter 1 --aov all

@@ -443,7 +443,7 @@ TEST(Shutter, MorphTargetsAndSkins) {
 TEST(Shutter, CamerasLightsAndShapes) {
   GltfBuilder b = animated<float>("translation", "LINEAR", {0, 1}, "VEC3", {0, 0, 0, 2, 0, 0});
   b.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 0.1}}}}};
-  b.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "spot"}}}}}}};
+  b.root["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", Json::object()}}}}}}};
   b.root["extensionsUsed"] = {"KHR_lights_punctual"};
   b.root["nodes"][0]["children"] = {1};  // what hangs below it moves with it
   b.root["nodes"].push_back({{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}, {"extras", {{"sunstone_shape", {{"type", "disk"}, {"radius", 3}}}}}});
