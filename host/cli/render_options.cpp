@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/render_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "cli/commands.h"
 #include "pipeline/plan.h"
 #include "shared/frame.h"
+#include "shared/light_map.h"
 
 namespace sunstone {
 
@@ -82,6 +86,9 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--heuristic", o.heuristic, "bdpt: strategies share a path by the power heuristic, or by the balance heuristic [power]")->type_name("power|balance")->group("Integrator");
   command.add_option("--strategy", o.strategy, "bdpt: paths of S vertices from the light and T from the eye alone")->type_name("S,T")->group("Integrator");
   command.add_flag("--unweighted", o.unweighted, "bdpt: that strategy as if there were no other")->group("Integrator");
+  command.add_option("--photons", o.photons, "sppm: light paths of a sample, whose photons all pixels share [as many as pixels, 1024 to 1048576]")->type_name("N")->group("Integrator");
+  command.add_option("--radius", o.radius, "sppm: within which photons count for the first sample; it shrinks [by the scene's size and the photons]")->type_name("METRES")->group("Integrator");
+  command.add_option("--alpha", o.alpha, "sppm: how much of what a sample adds is kept by the shrinking radius, above 0 to 1 [0.6667]")->type_name("A")->group("Integrator");
   command.add_option("--ambient", o.ambient, "whitted: light that is about everywhere, for matt surfaces [0,0,0]")->type_name("R,G,B")->group("Integrator");
   command.add_option("--cutoff", o.cutoff, "whitted: rays that are worth less are not followed [1/512]")->type_name("X")->group("Integrator");
   command.add_option("--camera", o.camera, "The file's camera of this name or number [0]")->type_name("NAME|INDEX")->group("Camera");
@@ -244,6 +251,27 @@ static void read_integrator_flags(const RenderOptions &o, RenderSettings &s) {
     check_flag(plan, "--cutoff");
     if (!(*o.cutoff >= 0 && *o.cutoff <= 1)) throw UsageError("--cutoff", "is from 0, which follows every ray to the depth limit, to 1");
     s.cutoff = static_cast<float>(*o.cutoff);
+  }
+  if (o.photons) {
+    check_flag(plan, "--photons");
+    const std::string place = "--photons " + std::to_string(*o.photons);
+    if (*o.photons < 1) throw UsageError(place, "without photons there is no light but what is direct", "use --integrator path");
+    if (*o.photons > SUN_MOST_PHOTONS) throw UsageError(place, "is more than " + std::to_string(SUN_MOST_PHOTONS) + ": each leaves several vertices of 64 bytes");
+    s.photons = static_cast<std::uint32_t>(*o.photons);
+  }
+  const auto read_radius = [&](const char *flag, const std::optional<double> &given, float &radius) {
+    if (!given) return;
+    check_flag(plan, flag);
+    if (!(*given > 0)) throw UsageError(fmt::format("{} {}", flag, *given), "is not above 0 metres: photons are looked for within it, and points meet none");
+    check_radius(flag, *given);
+    radius = static_cast<float>(*given);
+  };
+  read_radius("--radius", o.radius, s.radius);
+  read_radius("--caustic-radius", o.caustic_radius, s.caustic_radius);
+  if (o.alpha) {
+    check_flag(plan, "--alpha");
+    if (!(*o.alpha > 0 && *o.alpha <= 1)) throw UsageError(fmt::format("--alpha {}", *o.alpha), "is above 0, and at most 1, where the radius does not shrink");
+    s.alpha = std::max(static_cast<float>(*o.alpha), std::numeric_limits<float>::min());
   }
   if (o.double_count) check_flag(plan, "--double-count");
   s.double_count = o.double_count;

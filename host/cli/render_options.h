@@ -27,7 +27,8 @@ struct RenderOptions {
   bool unweighted = false;
   std::optional<std::string> sampling, nee, heuristic, strategy;
   std::optional<long long> light_samples, indirect_samples;
-  std::optional<double> absorption, cutoff;
+  std::optional<double> absorption, cutoff, radius, caustic_radius, alpha;
+  std::optional<long long> photons;
   std::string ambient;
   std::string camera, look_from, look_at, up = "y";
   std::optional<double> fov, aperture, focus;

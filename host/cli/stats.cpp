@@ -33,6 +33,7 @@ std::string render_stats(const Session &session, const Film &film, const RenderT
   j["upload_seconds"] = session.upload_seconds;
   j["memory"] = {{"scene_bytes", session.renderer->scene_bytes()},
                  {"pool_bytes", session.renderer->pool_bytes()},
+                 {"light_map_bytes", session.renderer->light_map_bytes()},
                  {"film_bytes", session.renderer->film_bytes()},
                  {"device_bytes", session.device.allocated()}};
   j["clamped"] = film.clamped;

@@ -9,10 +9,12 @@
 #include "pipeline/settings.h"
 #include "shared/bidirectional.h"
 #include "shared/frame.h"
+#include "shared/light_map.h"
 
 namespace sunstone {
 
 constexpr unsigned most_rays_a_sample = 1u << 20;
+constexpr double least_radius = 1e-6, most_radius = 1e6;  // metres
 
 std::span<const Plan> integrators() {
   using enum Stage;
@@ -29,6 +31,9 @@ std::span<const Plan> integrators() {
        "light that matt surfaces send each other; --integrator path follows it"},
       {"bdpt", "bidirectional path tracing: paths from the eye and from the lights, joined in every way", "Lafortune & Willems 1993, Veach & Guibas 1995", true, true, false,
        {gather_paths, emit, intersect, first_hit, deposit, connect, gather_shadow_rays, occlude_all, roulette}, {}, {"--heuristic", "--strategy", "--unweighted"}, "", true},
+      {"sppm", "stochastic progressive photon mapping: photons around what the eye sees, ever closer", "Hachisuka & Jensen 2009, Knaus & Zwicker 2011", true, true, false,
+       {gather_paths, generate, intersect, first_hit, gather, shade, gather_shadow_rays, occlude, roulette}, {}, {"--photons", "--radius", "--alpha"}, "", false,
+       {gather_paths, emit, intersect, deposit, roulette}, true, false},
       {"whitted", "mirrored and refracted rays, both followed, and point lights: no light between matt surfaces", "Whitted 1980", false, false, false, {whitted}, {},
        {"--ambient", "--cutoff"},
        "what emissive surfaces and the environment light (they are seen, directly and in mirrors), and light between matt surfaces; --integrator path follows both"},
@@ -69,6 +74,21 @@ static void check_bidirectional(const Plan &plan, const RenderSettings &s) {
   }
 }
 
+void check_radius(const std::string &flag, double radius) {
+  if (!(radius >= least_radius * (1 - 1e-6) && radius <= most_radius))
+    throw UsageError(fmt::format("{} {}", flag, radius), fmt::format("is not from {} to {} metres, within which photons can be told apart", least_radius, most_radius));
+}
+
+static void check_photons(const Plan &plan, const RenderSettings &s) {
+  if (s.max_depth > SUN_MOST_BIDIRECTIONAL_DEPTH)
+    throw UsageError("--max-depth " + std::to_string(s.max_depth), "is more than --integrator " + plan.name + " takes, " + std::to_string(SUN_MOST_BIDIRECTIONAL_DEPTH) + ": each light path in flight keeps a vertex for each, 128 bytes",
+                     "use --integrator path for longer paths");
+  if (s.radius != 0) check_radius("--radius", s.radius);
+  if (s.caustic_radius != 0) check_radius("--caustic-radius", s.caustic_radius);
+  if (!(s.alpha > 0 && s.alpha <= 1)) throw UsageError(fmt::format("--alpha {}", s.alpha), "is above 0, and at most 1, where the radius does not shrink");
+  if (s.photons > SUN_MOST_PHOTONS) throw UsageError("--photons " + std::to_string(s.photons), "is more than " + std::to_string(SUN_MOST_PHOTONS));
+}
+
 void check_settings(const Plan &plan, const RenderSettings &settings) {
   const RenderSettings plain;
   if (settings.end_on_light) check_flag(plan, "--end-on-light");
@@ -81,6 +101,11 @@ void check_settings(const Plan &plan, const RenderSettings &settings) {
   if (settings.strategy_t) check_flag(plan, "--strategy");
   if (settings.unweighted) check_flag(plan, "--unweighted");
   if (plan.bidirectional) check_bidirectional(plan, settings);
+  if (settings.photons != plain.photons) check_flag(plan, "--photons");
+  if (settings.radius != plain.radius) check_flag(plan, "--radius");
+  if (settings.caustic_radius != plain.caustic_radius) check_flag(plan, "--caustic-radius");
+  if (settings.alpha != plain.alpha) check_flag(plan, "--alpha");
+  if (plan.photons) check_photons(plan, settings);
   if (settings.ambient != plain.ambient) check_flag(plan, "--ambient");
   if (settings.cutoff != plain.cutoff) check_flag(plan, "--cutoff");
   if (std::ranges::find(plan.walk, Stage::whitted) != plan.walk.end() && settings.max_depth > SUN_WHITTED_DEPTH)
@@ -135,6 +160,14 @@ void check_plan(const Plan &plan) {
   for (const Stage stage : {Stage::gather_paths, begin, Stage::intersect, shade}) demand(has(stage), "a walk gathers, begins paths, intersects and shades");
   demand(at(Stage::gather_paths) < at(begin) && at(begin) < at(Stage::intersect) && at(Stage::intersect) < at(shade),
          "its stages stand in an order in which a queue is read before it is filled");
+  if (!plan.light_walk.empty()) {
+    const auto light = [&](Stage stage) { return std::ranges::find(plan.light_walk, stage) - plan.light_walk.begin(); };
+    demand(light(Stage::gather_paths) < light(Stage::emit) && light(Stage::emit) < light(Stage::intersect) && light(Stage::intersect) < light(Stage::deposit) &&
+               light(Stage::deposit) < static_cast<std::ptrdiff_t>(plan.light_walk.size()),
+           "light subpaths are gathered, begun, intersected and stored");
+  }
+  demand(has(Stage::gather) == plan.photons && has(Stage::gather_caustics) == (plan.photons && plan.map_once), "photons are looked at, or there are none");
+  if (plan.photons) demand(!plan.light_walk.empty() && at(Stage::intersect) < at(Stage::gather) && at(Stage::gather) < at(shade), "gather stands between intersect and shade");
   demand(has(Stage::deposit) == plan.bidirectional, "light subpaths are begun and walked, or neither");
   if (plan.bidirectional) demand(at(Stage::intersect) < at(Stage::deposit) && at(Stage::deposit) < at(Stage::gather_shadow_rays), "deposit stands between intersect and the shadow rays");
   demand(has(occlude) == plan.direct && has(Stage::gather_shadow_rays) == plan.direct, "shadow rays are sent and traced, or neither");

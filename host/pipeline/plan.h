@@ -8,7 +8,7 @@
 namespace sunstone {
 
 // What one step of a walk may run, in the order of a plan. `gather_*` make a dense queue for the stage behind them; `whitted` is a whole walk, fused.
-enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch, emit, deposit, connect, occlude_all, whitted };
+enum class Stage { gather_paths, generate, intersect, first_hit, shade, gather_shadow_rays, occlude, roulette, branch, emit, deposit, connect, occlude_all, whitted, gather, gather_caustics };
 
 struct RenderSettings;
 
@@ -22,6 +22,9 @@ struct Plan {
   std::vector<std::string> takes;    // flags of its own
   std::string leaves_out;            // light that it does not follow, and who does
   bool bidirectional = false;        // slots walk a light subpath first: shared/bidirectional.h
+  std::vector<Stage> light_walk = {};// one step of light subpaths alone, walked before those of eyes: their vertices become a map (pipeline/light_map.h)
+  bool photons = false;              // they are photons, that eye paths look at: SUN_FRAME_PHOTONS
+  bool map_once = false;             // one map serves all samples, with one of caustics beside it; else each sample has its own, of a radius that shrinks
   bool one_time = false;             // vertices of several pixels meet: all pixels take the shutter's time of a sample from its number alone
 };
 
@@ -41,6 +44,9 @@ bool branches(const RenderSettings &settings);
 
 // UsageError where the tree of rays of one sample would be beyond all bounds.
 void check_branching(const RenderSettings &settings);
+
+// UsageError where no photons could be found within it.
+void check_radius(const std::string &flag, double radius);
 
 // The queue that a stage needs has to be filled by one before it, and each that is filled has to be emptied: Error naming both otherwise.
 void check_plan(const Plan &plan);

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/error.h"
+#include "pipeline/light_map.h"
 #include "shared/bidirectional.h"
 
 namespace sunstone {
@@ -66,11 +69,20 @@ struct Renderer::State {
   Buffer<kernel::uint> pixels;     // of show
   Kernel view;
   std::vector<Stage> walk;         // the plan's, without stages that nothing asks for here
+  std::unique_ptr<LightMap> map;
+  LightGrid all, caustics;
+  std::optional<std::uint64_t> mapped;  // the sample whose light subpaths are in the map
+  std::uint64_t shrunk = 0;             // iterations that `shrink` stands for
+  double shrink = 1;                    // the radius' square, as a share of the first
 
   State(const Device &d, const Programs &p, const Plan &pl, const RenderSettings &s) : device(d), programs(p), plan(pl), settings(s) {}
   void name_layers();
   void place_tile(const Tile &tile);
   void take_counts(std::vector<kernel::uint> now);
+  void resolve_photons();
+  float radius_of(std::uint64_t iteration);
+  void trace_light(StageRunner &runner, std::uint64_t sample);
+  void look_at_light(StageRunner &runner, std::uint64_t sample);
   std::uint64_t render_launch(StageRunner &runner, std::uint64_t first, std::uint64_t count, std::uint64_t before, std::uint64_t wanted,
                               const std::function<bool(const RenderProgress &)> &progress);
   std::uint64_t render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
@@ -116,7 +128,6 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   s.film.x1 = settings.x1;
   s.film.y1 = settings.y1;
   s.film.scene_hash = scene.scene_hash.hex();
-  s.film.settings = film_settings(settings, camera, scene.camera_keys);
   s.name_layers();
 
   kernel::Frame &frame = s.frame;
@@ -150,10 +161,14 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   frame.cutoff = settings.cutoff;
   std::ranges::copy(settings.ambient, frame.ambient);
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
+  s.resolve_photons();
+  s.film.settings = film_settings(s.settings, camera, scene.camera_keys);
 
   for (const Stage stage : s.plan.walk) {
     const bool layers = s.film.layers.size() > SUN_LAYER_FIRST_OPTIONAL + frame.bounce_layers, lit = frame.emitter_count > 0;
-    if (stage == Stage::first_hit ? layers : stage == Stage::branch ? branches(settings) : stage == Stage::gather_shadow_rays || stage == Stage::occlude || stage == Stage::occlude_all ? lit : true) s.walk.push_back(stage);
+    const bool of_lights = stage == Stage::gather_shadow_rays || stage == Stage::occlude || stage == Stage::occlude_all;
+    const bool of_photons = stage == Stage::gather || stage == Stage::gather_caustics;
+    if (stage == Stage::first_hit ? layers : stage == Stage::branch ? branches(settings) : of_lights ? lit : of_photons ? lit && settings.max_depth > 0 : true) s.walk.push_back(stage);
   }
 
   const std::size_t bytes_a_pixel = s.film.layers.size() * SUN_FILM_CHANNELS * SUN_FILM_BINS * sizeof(std::int64_t);
@@ -166,15 +181,18 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
     throw Error("film", fmt::format("a picture of {}x{} does not fit on the device in one piece, and the light subpaths of --integrator {} may light any pixel", settings.width, settings.height, s.plan.name),
                 "use a smaller --size, fewer layers of --aov, or another --device");
   if (scene.motion() > programs.variant.motion) throw std::logic_error("programs without motion");
-  if (s.plan.bidirectional && !programs.variant.bidirectional) throw std::logic_error("programs without light subpaths");
+  const bool mapped = !s.plan.light_walk.empty();
+  if ((s.plan.bidirectional || mapped) && !programs.variant.bidirectional) throw std::logic_error("programs without light subpaths");
+  if (programs.variant.light_map != mapped || programs.variant.photons != s.plan.photons) throw std::logic_error("programs of another integrator");
   // An eye vertex sends a shadow ray to an emitter and to each light vertex.
-  const unsigned light_vertices = s.plan.bidirectional ? std::max(2u, settings.max_depth) - 1 : 0, shadow_rays = s.plan.bidirectional ? light_vertices + 1 : settings.light_samples;
+  const unsigned light_vertices = mapped ? std::max(1u, settings.max_depth) : s.plan.bidirectional ? std::max(2u, settings.max_depth) - 1 : 0, shadow_rays = s.plan.bidirectional ? light_vertices + 1 : settings.light_samples;
   frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16, shadow_rays, branch_records, light_vertices);
   if (static_cast<std::uint64_t>(frame.pool) * branch_records * 16 > std::numeric_limits<kernel::uint>::max())
     throw UsageError("--pool " + std::to_string(frame.pool), "with the branches of --max-depth " + std::to_string(settings.max_depth) + " has more words than 32 bits count", "use a smaller pool");
   if (static_cast<std::uint64_t>(frame.pool) * light_vertices * SUN_LIGHT_VERTEX_RECORDS * 16 > SUN_NONE)
     throw UsageError("--pool " + std::to_string(frame.pool), "has more light vertices than 32 bits count", "use a smaller pool, or a smaller --max-depth");
   s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk, shadow_rays, branch_records, light_vertices);
+  if (mapped) s.map = std::make_unique<LightMap>(device, programs.maps(), s.plan.photons ? 1 : SUN_LIGHT_VERTEX_RECORDS);
   // The keys of a camera that moves stand behind the frame.
   const std::size_t key_bytes = scene.camera_keys.size() * sizeof(kernel::Camera);
   s.device_frame = Buffer<kernel::Frame>(device, 1 + (key_bytes + sizeof(kernel::Frame) - 1) / sizeof(kernel::Frame), "frame");
@@ -220,6 +238,69 @@ void Renderer::State::take_counts(std::vector<kernel::uint> now) {
   seen = std::move(now);
 }
 
+// What is left to the program: as many photons as the picture has pixels, and a radius within which there are about ten of each path's vertices.
+void Renderer::State::resolve_photons() {
+  if (!plan.photons) return;
+  constexpr std::uint32_t least = 1u << 10, most = 1u << 20, once = 500000;
+  constexpr double spread = 4;
+  if (settings.photons == 0) settings.photons = plan.map_once ? once : std::clamp(frame.width * frame.height, least, most);
+  const double size = frame.scene_radius > 0 ? frame.scene_radius : 1;
+  if (settings.radius == 0) settings.radius = static_cast<float>(std::clamp(spread * size / std::sqrt(static_cast<double>(settings.photons)), 1e-6, 1e6));
+  if (settings.caustic_radius == 0) settings.caustic_radius = settings.radius / 2;
+  frame.light_paths = settings.photons;
+}
+
+// The global schedule: a pure function of the iteration, so that iterations may be done in any order and place [Knaus11 eq. 14].
+float Renderer::State::radius_of(std::uint64_t iteration) {
+  if (iteration < shrunk) {
+    shrunk = 0;
+    shrink = 1;
+  }
+  for (; shrunk < iteration; shrunk++) shrink *= (static_cast<double>(shrunk + 1) + static_cast<double>(settings.alpha)) / static_cast<double>(shrunk + 2);
+  return static_cast<float>(static_cast<double>(settings.radius) * std::sqrt(shrink));
+}
+
+// Light subpaths of a sample, in batches of the pool, into the map.
+void Renderer::State::trace_light(StageRunner &runner, std::uint64_t sample) {
+  const kernel::Frame of_eyes = frame;
+  frame.flags |= SUN_FRAME_LIGHT_PASS | (plan.photons ? SUN_FRAME_PHOTONS : 0u);
+  frame.sample_first = static_cast<kernel::uint>(sample);
+  device_frame.upload(std::span(&frame, 1));
+  const std::uint32_t paths = plan.photons ? settings.photons : frame.paths_per_sample;
+  map->begin(paths);
+  for (std::uint32_t first = 0; first < paths; first += pool->slots) {
+    const std::uint32_t count = std::min(pool->slots, paths - first);
+    pool->walks.fill_zero();
+    seen.assign(2 * SUN_COUNT_WORDS, 0);
+    seen[SUN_COUNT_NEXT_PATH] = first;
+    seen[SUN_COUNT_PATHS] = first + count;
+    pool->counts.upload(seen);
+    do {
+      for (int step = 0; step < steps_between_looks; step++)
+        for (const Stage stage : plan.light_walk) runner.run(stage);
+      take_counts(pool->counts.download());
+    } while (seen[SUN_COUNT_LIVE] != 0 || seen[SUN_COUNT_NEXT_PATH] < first + count);
+    counts.bounce_rays += count;  // their first
+    map->collect(*pool, device_frame, first, count);
+  }
+  map->end();
+  frame = of_eyes;
+}
+
+// Has the map that this sample looks at.
+void Renderer::State::look_at_light(StageRunner &runner, std::uint64_t sample) {
+  if (!map || frame.emitter_count == 0 || settings.max_depth == 0) return;
+  const std::uint64_t wanted = plan.map_once ? 0 : sample;
+  if (mapped != wanted) {
+    mapped.reset();
+    trace_light(runner, wanted);
+    map->build(all, plan.map_once ? settings.radius : radius_of(sample), 0);
+    if (plan.map_once) map->build(caustics, settings.caustic_radius, SUN_LIGHT_VERTEX_CAUSTIC);
+    mapped = wanted;
+  }
+  runner.look_at(*map, all, plan.map_once ? &caustics : nullptr);
+}
+
 // One launch of `count` samples from `first` on: steps until every path has ended. Returns how many samples were done.
 std::uint64_t Renderer::State::render_launch(StageRunner &runner, std::uint64_t first, std::uint64_t count, std::uint64_t before, std::uint64_t wanted,
                                              const std::function<bool(const RenderProgress &)> &progress) {
@@ -259,11 +340,15 @@ std::uint64_t Renderer::State::render_tile(const Tile &tile, SampleRange range, 
   place_tile(tile);
   device_film.fill_zero();
   StageRunner runner(programs, scene, *pool, device_frame, device_film);
-  const std::uint64_t at_once = std::max<std::uint64_t>(1, max_paths_of_a_launch / tile.paths_per_sample());
+  const bool mapped_each = map && !plan.map_once;
+  const std::uint64_t at_once = mapped_each ? 1 : std::max<std::uint64_t>(1, max_paths_of_a_launch / tile.paths_per_sample());
   std::uint64_t done = range.first;
-  while (done < range.last) {
+  bool go_on = true;
+  const auto asked = [&](const RenderProgress &p) { return go_on = go_on && (!progress || progress(p)); };
+  while (go_on && done < range.last) {
     const std::uint64_t count = std::min(at_once, range.last - done);
-    const std::uint64_t finished = render_launch(runner, done, count, begun, wanted, progress);
+    look_at_light(runner, done);
+    const std::uint64_t finished = render_launch(runner, done, count, begun, wanted, asked);
     begun += finished * tile.paths_per_sample();
     done += finished;
     if (finished < count) break;
@@ -296,7 +381,7 @@ SampleRange Renderer::render(SampleRange wanted, const std::function<bool(const 
     done.last = s.render_tile(s.tiles[0], wanted, begun, total, progress);
   } else {
     // Every band gets the same samples: a call may end between them only.
-    constexpr std::uint64_t at_once = 16;
+    const std::uint64_t at_once = s.map && !s.plan.map_once ? 1 : 16;
     bool go_on = true;
     while (go_on && done.last < wanted.last) {
       const SampleRange part{done.last, std::min(wanted.last, done.last + at_once)};
@@ -316,9 +401,16 @@ void Renderer::warm_up(const CompileProgress &progress) {
   s.device_frame.upload(std::span(&s.frame, 1));
   s.pool->counts.fill_zero();
   StageRunner runner(s.programs, s.scene, *s.pool, s.device_frame, s.device_film);
-  for (std::size_t i = 0; i < s.walk.size(); i++) {
-    if (progress) progress(static_cast<double>(i) / static_cast<double>(s.walk.size()), "first launches");
-    runner.run(s.walk[i]);
+  std::vector<Stage> stages = s.plan.light_walk;
+  stages.insert(stages.end(), s.walk.begin(), s.walk.end());
+  if (s.map) {
+    s.map->begin(1);
+    s.map->build(s.all, s.settings.radius, 0);
+    runner.look_at(*s.map, s.all, s.plan.map_once ? &s.all : nullptr);
+  }
+  for (std::size_t i = 0; i < stages.size(); i++) {
+    if (progress) progress(static_cast<double>(i) / static_cast<double>(stages.size()), "first launches");
+    runner.run(stages[i]);
     s.device.finish();
   }
   s.device.take_times();
@@ -420,6 +512,8 @@ std::size_t Renderer::pool_bytes() const {
   return p.paths.bytes() + p.status.bytes() + p.hits.bytes() + p.shadow_rays.bytes() + p.branches.bytes() + 2 * p.rays[0].bytes() + p.shadow_queue.bytes() + p.walks.bytes() + p.light_vertices.bytes();
 }
 
+std::size_t Renderer::light_map_bytes() const { return state_->map ? state_->map->bytes() + state_->all.bytes() + state_->caustics.bytes() : 0; }
+
 std::map<std::string, std::string> film_settings(const RenderSettings &s, const kernel::Camera &camera, std::span<const kernel::Camera> camera_keys) {
   Hasher hasher;
   hasher.bytes(&camera, sizeof camera);
@@ -446,6 +540,10 @@ std::map<std::string, std::string> film_settings(const RenderSettings &s, const 
     if (flag == "--heuristic") all[name] = s.balance ? "balance" : "power";
     if (flag == "--strategy") all[name] = s.strategy_t ? fmt::format("{},{}", s.strategy_s, s.strategy_t) : "all";
     if (flag == "--unweighted") all[name] = s.unweighted ? "yes" : "no";
+    if (flag == "--photons") all[name] = std::to_string(s.photons);
+    if (flag == "--radius") all[name] = fmt::format("{}", s.radius);
+    if (flag == "--caustic-radius") all[name] = fmt::format("{}", s.caustic_radius);
+    if (flag == "--alpha") all[name] = fmt::format("{}", s.alpha);
     if (flag == "--ambient") all[name] = fmt::format("{},{},{}", s.ambient[0], s.ambient[1], s.ambient[2]);
     if (flag == "--cutoff") all[name] = fmt::format("{}", s.cutoff);
     if (flag == "--double-count") all[name] = s.double_count ? "yes: wrong on purpose, direct light counts twice" : "no";

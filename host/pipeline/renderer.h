@@ -78,6 +78,7 @@ class Renderer {
   const Film &film() const;
   const RenderCounts &counts() const;
   std::size_t pool_bytes() const;
+  std::size_t light_map_bytes() const;
   std::size_t film_bytes() const;
   std::size_t scene_bytes() const;
   unsigned pool_slots() const;

@@ -46,6 +46,9 @@ struct RenderSettings {
   bool unweighted = false;     // it, as if there were no other
   std::array<float, 3> ambient{};  // radiance that matt surfaces scatter wherever they are
   float cutoff = 1.0f / 512;       // rays worth less are not followed
+  std::uint32_t photons = 0;       // light paths of an iteration, or of the whole render; 0: see default_photons
+  float radius = 0, caustic_radius = 0;  // metres within which photons count, at first; 0: by the scene, see default_radius
+  float alpha = 2.0f / 3;          // share of the photons that an iteration adds within a shrinking radius
   LayerChoice layers;
 };
 

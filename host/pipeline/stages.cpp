@@ -29,18 +29,19 @@ Switches on_paths(const Variant &v) {
   Switches switches = shading(v);
   switches["SUN_CHUNK"] = static_cast<int>(v.chunk);
   switches["SUN_BRANCHING"] = v.branching;
+  switches["SUN_PHOTONS"] = v.photons;
   return switches;
 }
 
 std::vector<std::string> stages_on_paths(const Variant &v) {
   std::vector<std::string> stages = {"generate", "first_hit", "shade", "roulette", "compact"};
   if (v.branching) stages.push_back("branch");
-  if (v.bidirectional) stages.insert(stages.end(), {"emit", "deposit", "connect"});
+  if (v.bidirectional) stages.insert(stages.end(), {"emit", "deposit", v.photons ? "gather" : "connect"});
   return stages;
 }
 std::vector<std::string> stages_on_rays(const Variant &v) {
   std::vector<std::string> stages = {"intersect", "occlude"};
-  if (v.bidirectional) stages.push_back("occlude_all");
+  if (v.bidirectional && !v.photons) stages.push_back("occlude_all");
   return stages;
 }
 
@@ -68,14 +69,22 @@ Variant device_variant(const DeviceInfo &info) {
   return variant;
 }
 
+Variant integrator_variant(Variant variant, const RenderSettings &settings) {
+  const Plan &plan = integrator(settings.integrator);
+  variant.light_map = !plan.light_walk.empty();
+  variant.bidirectional = plan.bidirectional || variant.light_map;
+  variant.photons = plan.photons;
+  variant.branching = branches(settings);
+  return variant;
+}
+
 Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings) {
-  variant.bidirectional = integrator(settings.integrator).bidirectional;
+  variant = integrator_variant(variant, settings);
   variant.passable = scene.has_passable;
   variant.specular = scene.has_specular;
   variant.shapes = scene.shape_count > 0;
   variant.motion = scene.motion();
   variant.textures = scene.has_textures;
-  variant.branching = branches(settings);
   return variant;
 }
 
@@ -89,6 +98,11 @@ Programs::Programs(const Device &device, const Variant &v, const CompileProgress
       paths(build_stages(device, "paths", stages_on_paths(v), on_paths(v), 0, progress)),
       rays(build_stages(device, "rays", stages_on_rays(v), tracing(v), 1, progress)),
       device_(device) {}
+
+const Program &Programs::maps() const {
+  if (!maps_) maps_ = build_stages(device_, "maps", {"collect", "sort"}, {{"LANES", 1}}, 0, {});
+  return *maps_;
+}
 
 const Program &Programs::whitted() const {
   if (!whitted_) {
@@ -144,14 +158,30 @@ StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool
   if (!p.variant.bidirectional) return;
   emit_.emplace(p.paths, "emit");
   deposit_.emplace(p.paths, "deposit");
-  connect_.emplace(p.paths, "connect");
-  occlude_all_.emplace(p.rays, "occlude_all");
+  if (p.variant.photons) {
+    gather_.emplace(p.paths, "gather");
+  } else {
+    connect_.emplace(p.paths, "connect");
+    occlude_all_.emplace(p.rays, "occlude_all");
+  }
 }
 
 void StageRunner::gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out) {
   count_.run(pool_.chunks, frame_, queue, pool_.status, pool_.counts, pool_.chunk_counts, bit);
   scan_.run(1, frame_, pool_.counts, pool_.chunk_counts, bit);
   scatter_.run(pool_.chunks, frame_, queue, pool_.status, pool_.counts, pool_.chunk_counts, out, bit);
+}
+
+void StageRunner::look_at(const LightMap &map, const LightGrid &all, const LightGrid *caustics) {
+  map_ = &map;
+  all_ = &all;
+  caustics_ = caustics;
+}
+
+void StageRunner::run_gather(const LightGrid &grid, kernel::uint phase) {
+  gather_->run((pool_.slots + lanes_ - 1) / lanes_, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1],
+               scene_.pages[2], scene_.pages[3], pool_.paths, pool_.status, pool_.hits, map_->vertices(), grid.order, grid.starts, map_->records(), grid.mask, grid.radius, phase,
+               pool_.rays[current_], pool_.counts, film_);
 }
 
 void StageRunner::run(Stage stage) {
@@ -208,6 +238,8 @@ void StageRunner::run(Stage stage) {
                     scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2], scene_.pages[3], pool_.counts, film_);
       whitted_next_->run(1, frame_, pool_.counts);
       break;
+    case Stage::gather: run_gather(*all_, caustics_ ? SUN_PHASE_FINAL : SUN_PHASE_SHARP); break;
+    case Stage::gather_caustics: run_gather(*caustics_, SUN_PHASE_SHARP); break;
     case Stage::roulette: roulette_.run(bundles, frame_, pool_.paths, pool_.status, pool_.branches, rays, pool_.counts); break;
     case Stage::branch: branch_->run(bundles, frame_, pool_.paths, pool_.status, pool_.hits, pool_.branches, rays, pool_.counts); break;
   }

@@ -8,6 +8,7 @@
 
 #include "device/kernel.h"
 #include "flatten/flatten.h"
+#include "pipeline/light_map.h"
 #include "pipeline/plan.h"
 #include "pipeline/settings.h"
 #include "pipeline/upload.h"
@@ -25,12 +26,16 @@ struct Variant {
   int motion = 2;  // FlatScene::motion
   bool branching = false;
   bool bidirectional = false;  // has the stages of light subpaths
+  bool light_map = false;      // and those of a map of their vertices
+  bool photons = false;        // which eye paths look at
   bool operator==(const Variant &) const = default;
 };
 
 // Lanes, layout of paths and chunks that suit a device: explicit vectors on CPUs, one path a work-item in columns on GPUs.
 Variant device_variant(const DeviceInfo &info);
-// What of it a scene and the settings of its picture need.
+// What of it an integrator needs ...
+Variant integrator_variant(Variant variant, const RenderSettings &settings);
+// ... and what a scene.
 Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSettings &settings);
 // The layout of the BVH that suits a device.
 Layout device_layout(const DeviceInfo &info);
@@ -44,11 +49,12 @@ struct Programs {
   Programs(const Device &device, const Variant &variant, const CompileProgress &progress = {});
   Variant variant;
   Program paths, rays;
+  const Program &maps() const;     // of the light map, likewise
   const Program &whitted() const;  // of the fused walk: compiled when it is first asked for
 
  private:
   Device device_;
-  mutable std::optional<Program> whitted_;
+  mutable std::optional<Program> whitted_, maps_;
 };
 
 // Paths and queues of one pool.
@@ -73,10 +79,13 @@ class StageRunner {
  public:
   StageRunner(const Programs &programs, const DeviceScene &scene, const Pool &pool, const Buffer<kernel::Frame> &frame, const Buffer<std::int64_t> &film);
   void run(Stage stage);
+  // The maps that `gather` and `gather_caustics` look at, which have to outlive the runner. Where there is none of caustics, all photons are looked at in their place.
+  void look_at(const LightMap &map, const LightGrid &all, const LightGrid *caustics);
   int current() const { return current_; }  // which of the pool's two ray queues is the queue now
   void set_current(int current) { current_ = current; }
 
  private:
+  void run_gather(const LightGrid &grid, kernel::uint phase);
   void gather(unsigned bit, const Buffer<kernel::uint> &queue, const Buffer<kernel::uint> &out);
   const Programs &programs_;
   const DeviceScene &scene_;
@@ -85,7 +94,9 @@ class StageRunner {
   const Buffer<std::int64_t> &film_;
   unsigned lanes_;
   int current_ = 0;  // which of pool.rays is the queue
-  std::optional<Kernel> emit_, deposit_, connect_, occlude_all_;
+  std::optional<Kernel> emit_, deposit_, connect_, occlude_all_, gather_;
+  const LightMap *map_ = nullptr;
+  const LightGrid *all_ = nullptr, *caustics_ = nullptr;
   Kernel generate_, intersect_, first_hit_, shade_, occlude_, roulette_, count_, scan_, scatter_;
   std::optional<Kernel> branch_;  // where vertices branch
   std::optional<Kernel> whitted_, whitted_next_;

@@ -140,5 +140,29 @@ SUN_FN Lobes facets_alone(const Lobes *lobes, mask through) {
   return l;
 }
 
+// The lobes without their facets, or the facets without the rest, each with the pmf that it has among all: the two add up, f by f and pdf by pdf.
+SUN_FN Lobes lobes_part(const Lobes *lobes, mask facets, mask rest) {
+  const real zero = (real)(0.0f);
+  const vec3 black = splat3(zero);
+  Lobes l = *lobes;
+  l.r0 = select3(facets, l.r0, black);
+  l.r90 = select3(facets, l.r90, black);
+  l.t0 = select3(facets, l.t0, black);
+  l.t90 = select3(facets, l.t90, black);
+  l.glass_tint = select3(facets, l.glass_tint, black);
+  l.glass = facets ? l.glass : zero;
+  l.pick_facets = facets ? l.pick_facets : zero;
+  l.diffuse = select3(rest, l.diffuse, black);
+  l.above = select3(rest, l.above, black);
+  l.below = select3(rest, l.below, black);
+  l.glass_below = select3(rest, l.glass_below, black);
+  l.glass_above = rest ? l.glass_above : zero;
+  l.pick_above = rest ? l.pick_above : zero;
+  l.pick_below = rest ? l.pick_below : zero;
+  l.pick_grazing_above = rest ? l.pick_grazing_above : zero;
+  l.pick_grazing_below = rest ? l.pick_grazing_below : zero;
+  return l;
+}
+
 SUN_NAMESPACE_END
 #endif

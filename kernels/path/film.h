@@ -36,6 +36,7 @@ typedef struct FilmView {
 // key, and so the same integer: that is why beauty is exactly the sum of its bounces. `vertex` counts the path's hits.
 #define SUN_FILM_KEY_EMISSION(vertex) (4u * (vertex))
 #define SUN_FILM_KEY_DIRECT(vertex, number) (4u * ((vertex) + ((number) << 20)) + 1u)
+#define SUN_FILM_KEY_PHOTONS(vertex, depth) (4u * ((vertex) + ((depth) << 20)) + 3u)  // that had scattered so often
 #define SUN_FILM_KEY_LAYER(layer) (4u * (layer) + 2u)  // first-hit layers: albedo, normal ...
 
 // Adds one 64-bit integer.

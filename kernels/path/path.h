@@ -70,8 +70,18 @@ SUN_FN void path_store(const Paths *paths, uint_n slots, mask active, const Path
     store_records(paths->words, slots, active, words);
 }
 
-// The random numbers of samples of pixels, which count within the tile.
+#define SUN_PHOTON_KEY 0x7068f070u
+
+// The random numbers of samples of pixels, which count within the tile. The photons of an iteration are points of one sequence, so that they are spread well over the
+// lights: `pixel` is their number, `sample` the iteration.
 SUN_FN SamplerKey pixel_key(const SUN_GLOBAL Frame *frame, uint_n pixel, uint_n sample) {
+  if (frame->flags & SUN_FRAME_PHOTONS) {
+    SamplerKey key;
+    key.pixel_hash = hash3((uint_n)(frame->seed), (uint_n)(SUN_PHOTON_KEY), sample);
+    key.sample = pixel;
+    key.kind = frame->sampler;
+    return key;
+  }
   uint_n y = pixel / (uint_n)(frame->tile_width);
   uint_n x = pixel - y * (uint_n)(frame->tile_width);
   return sampler_key(frame->seed, x + (uint_n)(frame->tile_x0), y + (uint_n)(frame->tile_y0), sample, frame->sampler);

@@ -12,7 +12,7 @@ SUN_NAMESPACE_BEGIN
 typedef struct Walk {
   real dVCM, dVC;
   vec3 emitted, absorption;
-  uint_n vertices;
+  uint_n vertices, rough, path;
   mask far;
 } Walk;
 
@@ -23,6 +23,8 @@ SUN_FN Walk walk_load(const SUN_GLOBAL uint *walks, uint_n slots) {
   walk.dVCM = real_of_bits(words[SUN_WALK_dVCM]);
   walk.dVC = real_of_bits(words[SUN_WALK_dVC]);
   walk.vertices = words[SUN_WALK_VERTICES];
+  walk.rough = words[SUN_WALK_ROUGH];
+  walk.path = words[SUN_WALK_PATH];
   walk.far = words[SUN_WALK_FAR] != (uint_n)(0);
   walk.emitted = make_vec3(real_of_bits(words[SUN_WALK_EMITTED]), real_of_bits(words[SUN_WALK_EMITTED + 1]), real_of_bits(words[SUN_WALK_EMITTED + 2]));
   walk.absorption = make_vec3(real_of_bits(words[SUN_WALK_ABSORPTION]), real_of_bits(words[SUN_WALK_ABSORPTION + 1]), real_of_bits(words[SUN_WALK_ABSORPTION + 2]));
@@ -35,6 +37,8 @@ SUN_FN void walk_store(SUN_GLOBAL uint *walks, uint_n slots, mask active, const 
   words[SUN_WALK_dVCM] = bits_of_real(walk->dVCM);
   words[SUN_WALK_dVC] = bits_of_real(walk->dVC);
   words[SUN_WALK_VERTICES] = walk->vertices;
+  words[SUN_WALK_ROUGH] = walk->rough;
+  words[SUN_WALK_PATH] = walk->path;
   words[SUN_WALK_FAR] = walk->far ? (uint_n)(1) : (uint_n)(0);
   words[SUN_WALK_EMITTED] = bits_of_real(walk->emitted.x);
   words[SUN_WALK_EMITTED + 1] = bits_of_real(walk->emitted.y);

@@ -35,6 +35,7 @@ SUN_FN Moment moment_of(const SUN_GLOBAL Frame *frame, real time) {
 SUN_FN Moment sample_moment(const SUN_GLOBAL Frame *frame, const SamplerKey *key) {
   if (!SUN_MOTION || frame->motion_steps == 0) return still_moment();
   SamplerKey of_time = *key;
+  if ((frame->flags & SUN_FRAME_ONE_TIME) && (frame->flags & SUN_FRAME_PHOTONS)) of_time.sample = (uint_n)(frame->sample_first);  // all of an iteration, too
   if (frame->flags & SUN_FRAME_ONE_TIME) of_time.pixel_hash = hash3((uint_n)(frame->seed), (uint_n)(SUN_NONE), (uint_n)(SUN_NONE));
   return moment_of(frame, sample_1d(&of_time, (uint_n)(SUN_DIM_TIME)));
 }

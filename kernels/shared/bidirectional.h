@@ -20,10 +20,12 @@ SUN_NAMESPACE_BEGIN
 #define SUN_WALK_VERTICES 2      // light vertices stored so far
 #define SUN_WALK_FAR 3           // 1: the segment comes from infinitely far (sky, directional light, orthographic camera)
 #define SUN_WALK_EMITTED 4       // 3 words: what the light subpath's throughput is a fraction of
+#define SUN_WALK_ROUGH 7         // scatterings so far that were no deltas
 #define SUN_WALK_ABSORPTION 8    // 3 words, 1/metre: of what the light subpath's segment goes through
+#define SUN_WALK_PATH 11         // number of the light subpath within its launch, and one: 0 is none
 #define SUN_WALK_WORDS 16
 
-// The words of a light vertex: two records.
+// The words of a light vertex: two records. Who looks at light that arrives, and not at what the surface there does with it, needs the first alone.
 #define SUN_LIGHT_VERTEX_RECORDS 2
 
 SUN_NAMESPACE_END

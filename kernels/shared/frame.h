@@ -37,6 +37,9 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 #define SUN_FRAME_TWICE 32u        // wrong on purpose: emitters that are hit count in full beside shadow rays
 #define SUN_FRAME_BALANCE 256u     // bidirectional weights: the balance heuristic; else the power heuristic
 #define SUN_FRAME_UNWEIGHTED 512u  // each strategy by itself, as if there were no other
+#define SUN_FRAME_LIGHT_PASS 4096u  // light subpaths alone: a slot that has walked one is free
+#define SUN_FRAME_PHOTONS 8192u     // they are photons: numbered by themselves and not by pixels, stored from their second hit on, and lit by all of a sky
+#define SUN_FRAME_FINAL_GATHER 16384u // eye paths look at the map of all photons one ray after the first matt surface, and there at that of caustics
 #define SUN_FRAME_END_ON_LIGHT 64u // a path ends on the emitter that it hits
 #define SUN_FRAME_ONE_TIME 1024u   // all pixels take the same time of the shutter for the same sample number
 #define SUN_FRAME_CAMERA_MOVES 2048u  // cameras for all keys of the shutter's time stand behind the frame
@@ -93,6 +96,8 @@ typedef struct Frame {
   float cutoff;                  // a ray whose worth is below this is not followed
   float ambient[3];              // radiance that is about in all places, for what scatters it diffusely
   uint motion_steps;             // keys less one while the shutter is open; 0: all is still
+  uint light_paths;              // of a light pass of photons
+  uint pad[3];
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 

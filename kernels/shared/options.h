@@ -60,6 +60,11 @@
 #define SUN_BIDIRECTIONAL 0
 #endif
 
+// 1 where eye paths look at photons.
+#ifndef SUN_PHOTONS
+#define SUN_PHOTONS 0
+#endif
+
 // 1 where the device has cl_khr_int64_base_atomics; otherwise the film adds two 32-bit words with carry.
 #ifndef SUN_ATOMICS_64
 #define SUN_ATOMICS_64 0

@@ -13,6 +13,11 @@ SUN_NAMESPACE_BEGIN
 #define SUN_STATUS_FIRST_HIT 0x00040000u   // the layers of the first hit have been written
 #define SUN_STATUS_ENDED 0x00080000u       // the path has just ended and is not counted yet
 #define SUN_STATUS_ENDED_SHIFT 20          // why it ended, below
+#define SUN_STATUS_PHASE 0x00300000u       // of a path that is alive, where there are photons: SUN_PHASE_, in the same bits
+#define SUN_STATUS_PHASE_SHIFT 20
+#define SUN_PHASE_SHARP 0                  // nothing but mirrors and glass since the eye
+#define SUN_PHASE_FINAL 1                  // past the surface that looks at caustics
+#define SUN_PHASE_LAST 2                   // past the surface that looks at all photons: it sees what lights send there, and ends
 #define SUN_STATUS_AGAIN 0x00400000u       // the hit is that of a vertex taken up again, for its next child: no ray is traced
 #define SUN_STATUS_TURN 0x00800000u        // the light subpath has ended: emit begins the eye subpath of the same sample
 #define SUN_STATUS_LIGHT 0x80000000u       // walks the light subpath

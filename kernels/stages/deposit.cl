@@ -3,7 +3,7 @@
 //   reads    hits; every column of the path; the walk; status
 //   writes   light vertices; a shadow ray to the lens; every column of the path; the walk; status
 //   queues   rays -> rays, shadow_rays (by bits of the status)
-//   holds    afterwards a light subpath has a ray to trace, or its slot waits for emit to begin the eye subpath
+//   holds    afterwards a light subpath has a ray to trace, or its slot waits for emit to begin the eye subpath (in a light pass: is free)
 //   source   [Lafortune93]; weights [Georgiev12 eq. 34-36, 46]; shading normals [Veach97 5.3.2]
 #include "path/contribute.h"
 #include "path/queue.h"
@@ -33,7 +33,8 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
   Walk walk = walk_load(walks, lanes.slot);
   HitLanes hit = load_hits(hits, lanes.slot, active);
   uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
-  uint_n next_word = (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_TURN);
+  const uint alone = frame->flags & SUN_FRAME_LIGHT_PASS, photons = frame->flags & SUN_FRAME_PHOTONS;
+  uint_n next_word = (uint_n)(alone ? 0u : SUN_STATUS_ALIVE | SUN_STATUS_TURN);
   mask found = active & hit.hit;
   if (ANY(found)) {
     SamplerKey key = path_key(frame, &path);
@@ -80,8 +81,11 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       vertex.depth = depth;
       vertex.material = surface.material;
       vertex.front = surface.front;
+      vertex.caustic = (depth > zero) & (walk.rough == zero);
       mask joins = scatters & !only_delta(&lobes);
-      Splat splat = connect_lens(scene, &vertex, sample_2d(&key, SUN_DIM_EMITTER_POINT(path.vertex)), sample_1d(&key, SUN_DIM_EMITTER(path.vertex)), joins);
+      Splat splat;
+      splat.ray.valid = joins & !joins;
+      if (!photons) splat = connect_lens(scene, &vertex, sample_2d(&key, SUN_DIM_EMITTER_POINT(path.vertex)), sample_1d(&key, SUN_DIM_EMITTER(path.vertex)), joins);
       mask seen = splat.ray.valid;
       if (ANY(seen)) {
         ShadowLanes ray;
@@ -98,7 +102,8 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
         shadow_rays_store(shadow_rays, lanes.slot, seen, &ray);
         shadows = seen ? one : zero;
       }
-      mask joined = joins & (depth + (uint_n)(2) <= (uint_n)(frame->max_depth));
+      // Joined by an edge a path scatters at both of its ends, merged in one point once. What lights send straight to a surface is asked of them there, not of photons.
+      mask joined = joins & (depth + (uint_n)(alone ? 1u : 2u) <= (uint_n)(frame->max_depth)) & (depth >= (uint_n)(photons ? 1u : 0u));
       if (ANY(joined)) {
         light_vertex_store(light_vertices, light_vertex_record(frame->pool, lanes.slot, walk.vertices), joined, &vertex);
         walk.vertices = walk.vertices + (joined ? one : zero);
@@ -116,6 +121,7 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       walk.dVCM = turned ? left.dVCM : walk.dVCM;
       walk.dVC = turned ? left.dVC : walk.dVC;
       walk.far = walk.far & !turned;
+      walk.rough = walk.rough + ((turned & (scatter.pdf_solid_angle > 0.0f)) ? one : zero);
       vec3 absorbs;
       GATHER_VEC3(absorbs, scene->materials, surface.material, absorption[0]);
       mask inner = bsdf.solid & ((dot3(scatter.direction, surface.normal) > 0.0f) != surface.front);

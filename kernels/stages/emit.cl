@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// emit: begins walks. Slots that compact gave out begin the light subpath of a new sample; those whose light subpath has ended begin its eye subpath.
+// emit: begins walks. Slots that compact gave out begin the light subpath of a new sample; those whose light subpath has ended begin its eye subpath. In a light pass
+// there are light subpaths alone.
 //   reads    counts REFILL_*; the ray queue; status
 //   writes   every column of the path; the walk; status
 //   queues   the slots stand in `rays` already: compact counted them in
-//   holds    afterwards a slot of `rays` is alive and has a ray, or stands for a pixel beyond the picture's edge and is dead
+//   holds    afterwards a slot of `rays` is alive and has a ray, or stands for a pixel beyond the picture's edge (or a light pass' subpath of no light) and is dead
 //   source   [Lafortune93]; weights begin as in [Georgiev12 eq. 31-33]
 #include "path/number.h"
 #include "path/queue.h"
@@ -27,7 +28,9 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
   Paths paths;
   paths.words = path_words;
   paths.pool = frame->pool;
-  PathNumber number = path_number(frame, (uint_n)(counts[SUN_COUNT_REFILL_PATH]) + (fresh ? position - (uint_n)(refill_first) : (uint_n)(0)));
+  uint_n path_count = (uint_n)(counts[SUN_COUNT_REFILL_PATH]) + (fresh ? position - (uint_n)(refill_first) : (uint_n)(0));
+  PathNumber number = path_number(frame, path_count);
+  if (frame->flags & SUN_FRAME_PHOTONS) number.inside = path_count < (uint_n)(frame->light_paths);
   mask inside = fresh & number.inside;
   Path path = path_load(&paths, lanes.slot);
   Walk walk = walk_load(walks, lanes.slot);
@@ -37,13 +40,19 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
   y = turns ? y : number.y;
   uint_n sample = turns ? path.sample : number.sample;
   path = camera_path(frame, scene->tables, x, y, sample);
+  if (frame->flags & SUN_FRAME_PHOTONS) {
+    path.pixel = path_count;
+    path.sample = (uint_n)(frame->sample_first);
+  }
   SamplerKey key = path_key(frame, &path);
   at_moment(&opened, &key);
   mask looks = turns | inside;
-  uint_n begun = (uint_n)(SUN_STATUS_ALIVE);
+  uint_n begun = (uint_n)((frame->flags & SUN_FRAME_LIGHT_PASS) ? 0u : SUN_STATUS_ALIVE);
   vec3 camera_direction = make_vec3(path.direction_x, path.direction_y, path.direction_z);
   real subpaths = (real)((float)frame->width * (float)frame->height);
   walk.vertices = turns ? walk.vertices : (uint_n)(0);
+  walk.rough = (uint_n)(0);
+  walk.path = turns ? walk.path : path_count + (uint_n)(1);
   walk.emitted = walk.absorption = splat3((real)(0.0f));
   walk.dVCM = heuristic_ratio(frame, subpaths * inverse_camera_pdf(frame, &scene->moment, camera_direction));
   walk.dVC = (real)(0.0f);

@@ -5,7 +5,6 @@
 //   queues   rays -> rays (by the alive bit of the status)
 //   holds    the expected throughput of a path is what it was
 //   source   [Arvo90]; a fixed chance, as the lecture has it, where absorption is not negative
-#include "math/sampler.h"
 #include "path/path.h"
 #include "path/queue.h"
 #include "shared/frame.h"
@@ -35,9 +34,7 @@ SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *pa
   active = active & (fixed ? path.passed_instance == (uint_n)(SUN_NONE) : brightest < 1.0f);
   if (!ANY(active)) return;
   real survival = fixed ? (real)(1.0f - frame->absorption) : max_real(brightest, (real)(SUN_ROULETTE_LEAST));
-  uint_n y = path.pixel / (uint_n)(frame->tile_width);
-  uint_n x = path.pixel - y * (uint_n)(frame->tile_width);
-  SamplerKey key = sampler_key(frame->seed, x + (uint_n)(frame->tile_x0), y + (uint_n)(frame->tile_y0), path.sample, frame->sampler);
+  SamplerKey key = path_key(frame, &path);
 #if SUN_BRANCHING
   key = branch_key(key, load_branch_state(frame, branches, lanes.slot).branch);
 #else
@@ -53,9 +50,9 @@ SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *pa
   path_store(&paths, lanes.slot, lives, &path);
   uint_n ended = (word & (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_SHADOW | SUN_STATUS_SHADOWS | SUN_STATUS_FIRST_HIT)) |
                  (uint_n)(SUN_STATUS_ENDED | (SUN_ENDED_ABSORBED << SUN_STATUS_ENDED_SHIFT));
-  // A light subpath that ends here leaves the sample its eye subpath.
+  // A light subpath that ends here leaves the sample its eye subpath, where there is one.
   mask light = (word & (uint_n)(SUN_STATUS_LIGHT)) != (uint_n)(0);
-  ended = light ? (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_TURN) : ended;
+  ended = light ? (uint_n)((frame->flags & SUN_FRAME_LIGHT_PASS) ? 0u : SUN_STATUS_ALIVE | SUN_STATUS_TURN) : ended;
   store_uint(status, lanes.slot, dies, ended);
 }
 

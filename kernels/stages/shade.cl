@@ -14,6 +14,9 @@
 #endif
 #include "transport/direct.h"
 #include "transport/emission.h"
+#if SUN_PHOTONS
+#include "transport/photons.h"
+#endif
 #include "transport/scatter.h"
 
 SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, mask stored, const DirectSample *direct, vec3 worth, const Path *path,
@@ -81,11 +84,20 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
 
   vec3 radiance = splat3((real)(0.0f));  // that reaches the path's last vertex along this ray ...
   vec3 arrived = throughput;             // ... and what it is worth from there
+#if SUN_PHOTONS
+  real passed_pdf = path.pdf_solid_angle;
+#endif
   mask escaped = active & !hit.hit;
   if (ANY(escaped)) {
     mask seen = (frame->flags & SUN_FRAME_TRANSPARENT) ? escaped & (depth != (uint_n)(0)) : escaped;
     radiance = escaped_emission(scene, direction, depth, path.pdf_solid_angle, seen);
   }
+#if SUN_PHOTONS
+  uint_n phase = (word & (uint_n)(SUN_STATUS_PHASE)) >> (uint_n)(SUN_STATUS_PHASE_SHIFT), last = (uint_n)(SUN_PHASE_LAST);
+  mask ends = active & (phase == last);
+#else
+  mask ends = active & !active;
+#endif
   uint_n next_word = (uint_n)(SUN_STATUS_ENDED | (SUN_ENDED_ESCAPED << SUN_STATUS_ENDED_SHIFT)) | depth | kept;
 
   mask found = active & hit.hit;
@@ -103,13 +115,13 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
     vec3 emission = hit_emission(scene, &surface, &hit, depth, path.pdf_solid_angle, present, &glowing);
     radiance = select3(present & !again, emission, radiance);
     mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
-    mask limited = present & (depth >= (uint_n)(frame->max_depth));
+    mask limited = present & ((depth >= (uint_n)(frame->max_depth)) | ends);
     // At the limit a path may still go straight on through smooth thin glass, which is no scattering.
     mask passable = (surface.material_flags & (uint_n)(SUN_MATERIAL_PASSABLE)) != (uint_n)(0);
     mask scatters = present & !unlit & (!limited | passable);
     if (frame->flags & SUN_FRAME_END_ON_LIGHT) scatters = scatters & !glowing;
     // Why the path ends here, if it does.
-    uint_n reason = glowing ? (uint_n)(SUN_ENDED_LIGHT) : limited ? (uint_n)(SUN_ENDED_DEPTH) : (uint_n)(SUN_ENDED_ABSORBED);
+    uint_n reason = glowing ? (uint_n)(SUN_ENDED_LIGHT) : (limited & !ends) ? (uint_n)(SUN_ENDED_DEPTH) : (uint_n)(SUN_ENDED_ABSORBED);
     mask turned = found & !found;
     uint_n shadows = (uint_n)(0);
     if (ANY(scatters)) {
@@ -126,7 +138,11 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
           light_key.sample = key.sample * (uint_n)(rays_a_vertex) + (uint_n)(number);  // further points of the same sequence
           real u_choice = sample_1d(&light_key, SUN_DIM_EMITTER(path.vertex));
           vec2 u_point = sample_2d(&light_key, SUN_DIM_EMITTER_POINT(path.vertex));
+#if SUN_PHOTONS
+          DirectSample direct = sample_direct_parts(scene, &surface, &lobes, wo_local, u_choice, u_point, asks);
+#else
           DirectSample direct = sample_direct(scene, &surface, &lobes, wo_local, u_choice, u_point, asks);
+#endif
           vec3 worth = mul3(throughput, scale3(direct.contribution, share));
           store_shadow_rays(shadow_rays + (size_t)number * frame->pool, lanes.slot, rays_a_vertex > 1 ? asks : direct.valid, &direct, worth, &path,
                             depth + (uint_n)(1), number, scene->moment.time);
@@ -144,6 +160,12 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
 #endif
       real u_lobe = sample_1d(&scatter_key, SUN_DIM_LOBE(path.vertex));
       vec2 u = sample_2d(&scatter_key, SUN_DIM_DIRECTION(path.vertex));
+#if SUN_PHOTONS
+      mask sharp;
+      lobes = next_lobes(frame, &lobes, &u_lobe, &sharp);
+      uint_n beyond = (frame->flags & SUN_FRAME_FINAL_GATHER) ? phase + (uint_n)(1) : last;
+      phase = sharp ? phase : beyond;
+#endif
       Scatter scatter = sample_scatter(scene, &surface, &lobes, bsdf.solid, wo_local, u_lobe, u);
 #if SUN_BRANCHING
       scatter.weight = select3(splits, scale3(scatter.weight, 1.0f / real_of_uint(children.sharing)), scatter.weight);
@@ -173,9 +195,18 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
     uint_n found_word = (alive ? (uint_n)(SUN_STATUS_ALIVE) : ended_word) | (shadows << (uint_n)(SUN_STATUS_SHADOWS_SHIFT));
     found_word = found_word | (shadows != (uint_n)(0) ? (uint_n)(SUN_STATUS_SHADOW) : (uint_n)(0));
     found_word = found_word | (turned ? depth + (uint_n)(1) : depth);
+#if SUN_PHOTONS
+    phase = turned ? phase : (word & (uint_n)(SUN_STATUS_PHASE)) >> (uint_n)(SUN_STATUS_PHASE_SHIFT);
+    found_word = found_word | (alive ? phase << (uint_n)(SUN_STATUS_PHASE_SHIFT) : (uint_n)(0));
+#endif
     next_word = found ? found_word | kept : next_word;
   }
 
+#if SUN_PHOTONS
+  // Light that mirrors and glass send to the surface that looked at caustics.
+  mask caustic = active & ((word & (uint_n)(SUN_STATUS_PHASE)) == (uint_n)(SUN_PHASE_FINAL << SUN_STATUS_PHASE_SHIFT)) & (passed_pdf <= 0.0f);
+  radiance = select3(caustic, splat3((real)(0.0f)), radiance);
+#endif
   real sum = fabs(radiance.x) + fabs(radiance.y) + fabs(radiance.z);
   mask shines = active & !(sum == 0.0f);
   if (ANY(shines)) {

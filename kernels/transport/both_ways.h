@@ -3,6 +3,7 @@
 // the eye and wi that to the light: so both walks see the same surface, its normals bent towards wo, and both estimate the same integral.
 #ifndef SUN_TRANSPORT_BOTH_WAYS_H
 #define SUN_TRANSPORT_BOTH_WAYS_H
+#include "math/measure.h"
 #include "scene/surface.h"
 #include "transport/scatter.h"
 #include "transport/vertex_weights.h"

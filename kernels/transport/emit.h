@@ -69,6 +69,11 @@ SUN_FN Emission sample_emission(const Scene *scene, real u_choice, real u_side, 
   }
   if (ANY(is_environment)) {
     EnvironmentSample sky = environment_sample(&frame->environment, scene->environment_cdf, u_direction.x, u_direction.y);
+    if (frame->flags & SUN_FRAME_PHOTONS) {
+      // A map's chances leave its dim parts to rays that meet them by chance [Karlik19]; what photons do not carry is lost, so half of them come from anywhere.
+      sky.direction = select3(u_side >= 0.5f, square_to_uniform_sphere(u_direction), sky.direction);
+      sky.pdf = 0.5f * environment_pdf(&frame->environment, scene->environment_cdf, sky.direction) + 0.5f * square_to_uniform_sphere_pdf();
+    }
     vec3 radiance = environment_radiance(&frame->environment, scene->environment_texels, sky.direction);
     mask usable = is_environment & (sky.pdf > 0.0f);
     e.direction = select3(is_environment, negate3(sky.direction), e.direction);

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light vertices of a whole light pass, one after the other by the number of their path, then along it; and a grid over them.
+#ifndef SUN_SHARED_LIGHT_MAP_H
+#define SUN_SHARED_LIGHT_MAP_H
+#include "shared/types.h"
+
+SUN_NAMESPACE_BEGIN
+
+// Words of a light vertex' first record: 0 to 2 are its position, as for every look-up.
+#define SUN_LIGHT_VERTEX_FLAGS 3
+#define SUN_LIGHT_VERTEX_NORMAL 4          // 3 words
+#define SUN_LIGHT_VERTEX_SOLID 1u
+#define SUN_LIGHT_VERTEX_FRONT 4u
+#define SUN_LIGHT_VERTEX_CAUSTIC 8u
+#define SUN_LIGHT_VERTEX_DEPTH_SHIFT 8
+
+#define SUN_SCAN_BLOCK 256   // entries that a work-item sums up
+#define SUN_SORT_BITS 8      // that a pass of the sort looks at
+#define SUN_SORT_DIGITS 256
+
+#define SUN_MOST_PHOTONS 268435456  // light paths of a map
+
+// Vertices merge where their surfaces face the same way within this cosine: about 25 degrees.
+#define SUN_MERGE_COSINE 0.9f
+
+SUN_NAMESPACE_END
+#endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// gather: what photons around the hit of an eye path add to the film. The path itself is left to shade, which comes next.
+//   reads    hits; every column of the path; status; a light map
+//   writes   film
+//   queues   rays
+//   holds    a path looks at each map once, at a surface that is not only sharp; a photon counts for the bounce that its scatterings, the path's and this one make
+//   source   [Jensen96] [Hachisuka09 eq. 4]; the kernel of [Epanechnikov69]
+#include "path/contribute.h"
+#include "path/queue.h"
+#include "transport/light_map.h"
+#include "transport/light_vertex.h"
+#include "transport/photons.h"
+#include "transport/step.h"
+
+SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
+                            LIGHT_MAP_PARAMETERS, uint phase, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words, uint first) {
+  uint length = counts[SUN_COUNT_LIVE];
+  if (first >= length) return;
+  QueueLanes lanes = queue_lanes(rays, first, length);
+  uint_n word = gather_uint(status, lanes.slot);
+  uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
+  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_PHASE)) == (uint_n)(SUN_STATUS_ALIVE | (phase << SUN_STATUS_PHASE_SHIFT)));
+  active = active & (depth < (uint_n)(frame->max_depth));
+  if (!ANY(active)) return;
+  Scene opened = open_scene(frame, SCENE_ARGUMENTS);
+  const Scene *scene = &opened;
+  Paths paths;
+  paths.words = (SUN_GLOBAL uint *)path_words;
+  paths.pool = frame->pool;
+  Path path = path_load(&paths, lanes.slot);
+  HitLanes hit = load_hits(hits, lanes.slot, active);
+  mask found = active & hit.hit;
+  if (!ANY(found)) return;
+  SamplerKey key = path_key(frame, &path);
+  at_moment(&opened, &key);
+  vec3 wo = make_vec3(-path.direction_x, -path.direction_y, -path.direction_z);
+  Surface surface = make_surface(scene, &hit, wo);
+  mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
+  mask gathers = found & !surface_absent(scene, &surface, &hit, &key, path.vertex, found) & !unlit;
+  if (!ANY(gathers)) return;
+  Bsdf bsdf = surface_bsdf(scene, &surface, gathers);
+  Side side;
+  side.shading = surface.shading;
+  side.normal = surface.normal;
+  side.wo_local = to_local(&surface.shading, wo);
+  Lobes lobes = bsdf_lobes(&bsdf, scene->tables, side.wo_local);
+  side.lobes = gathering_lobes(frame, &lobes);
+  gathers = gathers & has_lobes(&side.lobes);
+  if (!ANY(gathers)) return;
+
+  // Sums by the photons' depth, as each bounce is rounded by itself.
+  float sums[SUN_MOST_BIDIRECTIONAL_DEPTH][3][LANES];
+  for (uint d = 0; d < frame->max_depth; d++)
+    for (int c = 0; c < 3; c++)
+      for (int lane = 0; lane < LANES; lane++) sums[d][c][lane] = 0.0f;
+  LightMap map = open_light_map(LIGHT_MAP_ARGUMENTS);
+  MapQueries queries;
+  map_begin(&map, &queries, surface.position, select3(surface.front, surface.normal, negate3(surface.normal)), bsdf.solid, gathers);
+  uint most[LANES];
+  uint_n most_depth = (uint_n)(frame->max_depth - 1) - depth;
+  LANES_STORE(most_depth, most);
+  for (;;) {
+    uint_n number;
+    mask some = map_next(&map, &queries, &number);
+    if (!ANY(some)) break;
+    LightVertex photon = light_vertex_arrival(map.vertices, number * (uint_n)(map.records));
+    vec3 to = sub3(photon.at.position, surface.position);
+    BsdfEval eval = side_eval(scene, &side, photon.to_light);
+    // f cos counts the shading normals' cosine, flux the true one: both walks see the same surface, see transport/both_ways.h.
+    real weight = (1.0f - dot3(to, to) / (map.radius * map.radius)) / max_real(fabs(dot3(photon.to_light, photon.at.normal)), (real)(SUN_LEAST_COSINE));
+    vec3 light = scale3(mul3(eval.f_cos, photon.flux), weight);
+    light = select3(some, light, splat3((real)(0.0f)));
+    float rgb[3][LANES];
+    uint depths[LANES];
+    LANES_STORE(light.x, rgb[0]);
+    LANES_STORE(light.y, rgb[1]);
+    LANES_STORE(light.z, rgb[2]);
+    LANES_STORE(photon.depth, depths);
+    for (int lane = 0; lane < LANES; lane++)
+      if (depths[lane] <= most[lane])
+        for (int c = 0; c < 3; c++) sums[depths[lane]][c][lane] += rgb[c][lane];
+  }
+  // Over the area, whose mean the kernel is 2 (1 - d^2 / r^2) of, and over the paths that left the lights.
+  vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
+  throughput = mul3(throughput, surface_absorption(scene, &surface, hit.t, gathers));
+  throughput = scale3(throughput, (real)(2.0f / (SUN_PI * map.radius * map.radius) / (float)frame->light_paths));
+  FilmView film = open_film(frame, film_words, counts);
+  for (uint d = 0; d < frame->max_depth; d++) {
+    vec3 sum = make_vec3(LANES_LOAD(sums[d][0]), LANES_LOAD(sums[d][1]), LANES_LOAD(sums[d][2]));
+    mask lit = gathers & !(fabs(sum.x) + fabs(sum.y) + fabs(sum.z) == 0.0f);
+    if (!ANY(lit)) continue;
+    film_contribute_keyed(frame, &film, lit, &path, SUN_FILM_KEY_PHOTONS(path.vertex, (uint_n)(d)), depth + (uint_n)(d + 1), mul3(throughput, sum));
+  }
+}
+
+SUN_KERNEL void gather(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
+                       LIGHT_MAP_PARAMETERS, uint phase, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
+  gather_bundle(frame, SCENE_ARGUMENTS, path_words, status, hits, LIGHT_MAP_ARGUMENTS, phase, rays, counts, film_words, (uint)get_global_id(0) * LANES);
+}
