@@ -27,7 +27,8 @@ constexpr Expected expected[] = {{"path", "a8ee87ddcdd458350ad1642736044e05"},
                                  {"hybrid", "e2cf20450aca91ce8412c296d2f930b1"},
                                  {"distribution", "aeb70a1353f8e1fbba98b258a8716779"},
                                  {"whitted", "66c4a3ebaecc11efe3080125fd62ea69"},
-                                 {"bdpt", "2e9272f8fdef287e5a2cf366e2010a5b"}};
+                                 {"bdpt", "2e9272f8fdef287e5a2cf366e2010a5b"},
+                                 {"sppm", "6a9e345944d784c70c15da7094e5d168"},
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -95,6 +96,7 @@ void Verify::scenes(const Device &device) {
       if (name == "hybrid" || name == "distribution") settings.light_samples = 3;
       if (name == "hybrid") settings.absorption = 0.25f;
       if (name == "distribution") settings.indirect_samples = 2;
+      if (name == "photon") settings.photons = 20000;
       if (name == "whitted") settings.ambient = {0.2f, 0.3f, 0.4f};
       const Variant wanted = scene_variant(variant, flat, settings);
       if (!programs || !(programs->variant == wanted)) programs = std::make_unique<Programs>(device, wanted);

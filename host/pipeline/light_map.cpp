@@ -30,6 +30,7 @@ LightMap::LightMap(const Device &device, const Program &program, unsigned record
       keys_of_(program, "map_keys"),
       histogram_of_(program, "histogram_chunks"),
       reorder_(program, "reorder_chunks"),
+      entries_(program, "map_entries"),
       table_(program, "map_table"),
       scan_blocks_(program, "scan_blocks"),
       scan_sums_(program, "scan_sums"),
@@ -96,27 +97,26 @@ void LightMap::build(LightGrid &grid, float radius, kernel::uint wanted) {
   grid.mask = (1u << bits) - 1;
   grid.radius = radius;
   reserve(grid.starts, (std::size_t(1) << bits) + 1, "table of the light map");
-  reserve(grid.order, count_, "order of the light map");
-  reserve(order_, count_, "order of the light map");
+  reserve(grid.entries, static_cast<std::size_t>(count_) * SUN_MAP_ENTRY_WORDS, "entries of the light map");
+  for (auto &order : order_) reserve(order, count_, "order of the light map");
   for (auto &keys : keys_) reserve(keys, count_, "keys of the light map");
   const kernel::uint chunks = (count_ + chunk - 1) / chunk;
   reserve(histogram_, static_cast<std::size_t>(chunks) * SUN_SORT_DIGITS, "histogram");
   const unsigned passes = (bits + 1 + SUN_SORT_BITS - 1) / SUN_SORT_BITS;
-  // The last pass ends in the grid's own buffer.
-  const Buffer<kernel::uint> *order[2] = {&grid.order, &order_};
-  unsigned now = passes % 2;
-  keys_of_.run(count_, vertices_, records_, count_, radius, grid.mask, wanted, keys_[now], *order[now]);
+  unsigned now = 0;
+  keys_of_.run(count_, vertices_, records_, count_, radius, grid.mask, wanted, keys_[now], order_[now]);
   for (unsigned pass = 0; pass < passes && count_ > 0; pass++, now = 1 - now) {
     const kernel::uint shift = pass * SUN_SORT_BITS;
     histogram_of_.run(chunks, keys_[now], count_, chunk, shift, histogram_);
     scan(histogram_, 0, chunks * SUN_SORT_DIGITS, 0);
-    reorder_.run(chunks, keys_[now], *order[now], count_, chunk, shift, histogram_, keys_[1 - now], *order[1 - now]);
+    reorder_.run(chunks, keys_[now], order_[now], count_, chunk, shift, histogram_, keys_[1 - now], order_[1 - now]);
   }
-  table_.run(static_cast<std::size_t>(count_) + 1, keys_[0], count_, grid.mask, grid.starts);
+  entries_.run(count_, vertices_, records_, count_, order_[now], grid.entries);
+  table_.run(static_cast<std::size_t>(count_) + 1, keys_[now], count_, grid.mask, grid.starts);
 }
 
 std::size_t LightMap::bytes() const {
-  return vertices_.bytes() + path_starts_.bytes() + path_slots_.bytes() + sums_.bytes() + histogram_.bytes() + keys_[0].bytes() + keys_[1].bytes() + order_.bytes();
+  return vertices_.bytes() + path_starts_.bytes() + path_slots_.bytes() + sums_.bytes() + histogram_.bytes() + keys_[0].bytes() + keys_[1].bytes() + order_[0].bytes() + order_[1].bytes();
 }
 
 }  // namespace sunstone

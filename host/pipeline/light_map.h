@@ -11,10 +11,10 @@ struct Pool;
 
 // Vertices by place: what kernels take as LIGHT_MAP_PARAMETERS, beside the vertices themselves.
 struct LightGrid {
-  Buffer<kernel::uint> order, starts;
+  Buffer<kernel::uint> entries, starts;
   kernel::uint mask = 0;
   float radius = 1;
-  std::size_t bytes() const { return order.bytes() + starts.bytes(); }
+  std::size_t bytes() const { return entries.bytes() + starts.bytes(); }
 };
 
 class LightMap {
@@ -48,8 +48,8 @@ class LightMap {
   Device device_;
   kernel::uint records_;
   std::uint32_t paths_ = 0, count_ = 0;
-  Buffer<kernel::uint> vertices_, path_starts_, path_slots_, sums_, histogram_, keys_[2], order_;
-  Kernel tally_, collect_, copy_, keys_of_, histogram_of_, reorder_, table_, scan_blocks_, scan_sums_, scan_values_;
+  Buffer<kernel::uint> vertices_, path_starts_, path_slots_, sums_, histogram_, keys_[2], order_[2];
+  Kernel tally_, collect_, copy_, keys_of_, histogram_of_, reorder_, entries_, table_, scan_blocks_, scan_sums_, scan_values_;
 };
 
 }  // namespace sunstone

@@ -17,7 +17,8 @@ namespace sunstone {
 namespace {
 
 constexpr std::uint64_t max_paths_of_a_launch = std::uint64_t(1) << 31;
-constexpr int steps_between_looks = 8;  // of the whole walk, before the host reads how far it is
+constexpr int steps_between_looks = 8;  // of the whole walk, before the host reads how far it is ...
+constexpr int steps_in_a_pass = 4;      // ... and where a launch is short, as a pass over one sample is
 
 struct Tile {
   int x0, y0, width, height;
@@ -36,9 +37,9 @@ std::vector<Tile> split(const RenderSettings &s, std::size_t bytes_a_pixel, std:
   return tiles;
 }
 
-unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths, unsigned light_samples, unsigned branch_records, unsigned light_vertices) {
-  // On CPUs the pool stays in the caches, light vertices included.
-  unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : light_vertices ? 1u << 12 : 1u << 14;
+unsigned choose_pool(const DeviceInfo &info, const Tuning &tuning, std::uint64_t paths, unsigned light_samples, unsigned branch_records, unsigned light_vertices, bool mapped) {
+  // On CPUs the pool stays in the caches, light vertices included; but a pass that ends with its pool wants a large one.
+  unsigned pool = tuning.pool ? tuning.pool : info.gpu ? 1u << 20 : mapped ? 1u << 13 : light_vertices ? 1u << 12 : 1u << 14;
   constexpr unsigned most_shadow_rays = 1u << 22;  // 256 MiB of them
   if (!tuning.pool) pool = static_cast<unsigned>(std::min<std::size_t>(pool, std::min<std::size_t>(most_shadow_rays, info.max_allocation / sizeof(kernel::ShadowRay)) / light_samples));
   constexpr std::size_t most_branch_bytes = std::size_t(1) << 28;
@@ -147,6 +148,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if (s.plan.weighted) frame.flags |= SUN_FRAME_WEIGHTED;
   if (s.plan.effects) frame.flags |= SUN_FRAME_EFFECTS;
   if (s.plan.one_time) frame.flags |= SUN_FRAME_ONE_TIME;
+  if (s.plan.map_once) frame.flags |= SUN_FRAME_FINAL_GATHER;
   if (settings.nee_first) frame.flags |= SUN_FRAME_FIRST;
   if (settings.double_count) frame.flags |= SUN_FRAME_TWICE;
   if (settings.end_on_light) frame.flags |= SUN_FRAME_END_ON_LIGHT;
@@ -185,8 +187,9 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if ((s.plan.bidirectional || mapped) && !programs.variant.bidirectional) throw std::logic_error("programs without light subpaths");
   if (programs.variant.light_map != mapped || programs.variant.photons != s.plan.photons) throw std::logic_error("programs of another integrator");
   // An eye vertex sends a shadow ray to an emitter and to each light vertex.
-  const unsigned light_vertices = mapped ? std::max(1u, settings.max_depth) : s.plan.bidirectional ? std::max(2u, settings.max_depth) - 1 : 0, shadow_rays = s.plan.bidirectional ? light_vertices + 1 : settings.light_samples;
-  frame.pool = choose_pool(device.info(), tuning, s.tiles[0].paths_per_sample() * 16, shadow_rays, branch_records, light_vertices);
+  const unsigned of_a_depth = SUN_LIGHT_VERTICES_A_DEPTH(scene.has_passable);
+  const unsigned light_vertices = of_a_depth * (mapped ? std::max(1u, settings.max_depth) : s.plan.bidirectional ? std::max(2u, settings.max_depth) - 1 : 0), shadow_rays = s.plan.bidirectional ? light_vertices + 1 : settings.light_samples;
+  frame.pool = choose_pool(device.info(), tuning, std::max<std::uint64_t>(s.tiles[0].paths_per_sample() * 16, frame.light_paths), shadow_rays, branch_records, light_vertices, mapped);
   if (static_cast<std::uint64_t>(frame.pool) * branch_records * 16 > std::numeric_limits<kernel::uint>::max())
     throw UsageError("--pool " + std::to_string(frame.pool), "with the branches of --max-depth " + std::to_string(settings.max_depth) + " has more words than 32 bits count", "use a smaller pool");
   if (static_cast<std::uint64_t>(frame.pool) * light_vertices * SUN_LIGHT_VERTEX_RECORDS * 16 > SUN_NONE)
@@ -276,7 +279,7 @@ void Renderer::State::trace_light(StageRunner &runner, std::uint64_t sample) {
     seen[SUN_COUNT_PATHS] = first + count;
     pool->counts.upload(seen);
     do {
-      for (int step = 0; step < steps_between_looks; step++)
+      for (int step = 0; step < steps_in_a_pass; step++)
         for (const Stage stage : plan.light_walk) runner.run(stage);
       take_counts(pool->counts.download());
     } while (seen[SUN_COUNT_LIVE] != 0 || seen[SUN_COUNT_NEXT_PATH] < first + count);
@@ -312,7 +315,7 @@ std::uint64_t Renderer::State::render_launch(StageRunner &runner, std::uint64_t 
   pool->counts.upload(seen);
   bool stopping = false;
   for (;;) {
-    for (int step = 0; step < steps_between_looks; step++)
+    for (int step = 0; step < (map && !plan.map_once ? steps_in_a_pass : steps_between_looks); step++)
       for (const Stage stage : walk) runner.run(stage);
     take_counts(pool->counts.download());
     const std::uint64_t begun = seen[SUN_COUNT_NEXT_PATH];

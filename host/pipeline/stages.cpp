@@ -180,7 +180,7 @@ void StageRunner::look_at(const LightMap &map, const LightGrid &all, const Light
 
 void StageRunner::run_gather(const LightGrid &grid, kernel::uint phase) {
   gather_->run((pool_.slots + lanes_ - 1) / lanes_, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1],
-               scene_.pages[2], scene_.pages[3], pool_.paths, pool_.status, pool_.hits, map_->vertices(), grid.order, grid.starts, map_->records(), grid.mask, grid.radius, phase,
+               scene_.pages[2], scene_.pages[3], pool_.paths, pool_.status, pool_.hits, map_->vertices(), grid.entries, grid.starts, map_->records(), grid.mask, grid.radius, phase,
                pool_.rays[current_], pool_.counts, film_);
 }
 

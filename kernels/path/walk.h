@@ -13,7 +13,7 @@ typedef struct Walk {
   real dVCM, dVC;
   vec3 emitted, absorption;
   uint_n vertices, rough, path;
-  mask far;
+  mask far, holds, unseen;
 } Walk;
 
 SUN_FN Walk walk_load(const SUN_GLOBAL uint *walks, uint_n slots) {
@@ -26,6 +26,8 @@ SUN_FN Walk walk_load(const SUN_GLOBAL uint *walks, uint_n slots) {
   walk.rough = words[SUN_WALK_ROUGH];
   walk.path = words[SUN_WALK_PATH];
   walk.far = words[SUN_WALK_FAR] != (uint_n)(0);
+  walk.unseen = words[SUN_WALK_UNSEEN] != (uint_n)(0);
+  walk.holds = words[SUN_WALK_HOLDS] != (uint_n)(0);
   walk.emitted = make_vec3(real_of_bits(words[SUN_WALK_EMITTED]), real_of_bits(words[SUN_WALK_EMITTED + 1]), real_of_bits(words[SUN_WALK_EMITTED + 2]));
   walk.absorption = make_vec3(real_of_bits(words[SUN_WALK_ABSORPTION]), real_of_bits(words[SUN_WALK_ABSORPTION + 1]), real_of_bits(words[SUN_WALK_ABSORPTION + 2]));
   return walk;
@@ -39,6 +41,8 @@ SUN_FN void walk_store(SUN_GLOBAL uint *walks, uint_n slots, mask active, const 
   words[SUN_WALK_VERTICES] = walk->vertices;
   words[SUN_WALK_ROUGH] = walk->rough;
   words[SUN_WALK_PATH] = walk->path;
+  words[SUN_WALK_UNSEEN] = walk->unseen ? (uint_n)(1) : (uint_n)(0);
+  words[SUN_WALK_HOLDS] = walk->holds ? (uint_n)(1) : (uint_n)(0);
   words[SUN_WALK_FAR] = walk->far ? (uint_n)(1) : (uint_n)(0);
   words[SUN_WALK_EMITTED] = bits_of_real(walk->emitted.x);
   words[SUN_WALK_EMITTED + 1] = bits_of_real(walk->emitted.y);

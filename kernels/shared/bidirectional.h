@@ -23,10 +23,15 @@ SUN_NAMESPACE_BEGIN
 #define SUN_WALK_ROUGH 7         // scatterings so far that were no deltas
 #define SUN_WALK_ABSORPTION 8    // 3 words, 1/metre: of what the light subpath's segment goes through
 #define SUN_WALK_PATH 11         // number of the light subpath within its launch, and one: 0 is none
+#define SUN_WALK_HOLDS 12        // 1: a light vertex is stored of the depth at hand
+#define SUN_WALK_UNSEEN 13       // 1: from a light without extent, and nothing but deltas since
 #define SUN_WALK_WORDS 16
 
 // The words of a light vertex: two records. Who looks at light that arrives, and not at what the surface there does with it, needs the first alone.
 #define SUN_LIGHT_VERTEX_RECORDS 2
+
+// Light vertices that a subpath may store of each depth: more than one where it can go straight on through what also scatters (thin glass).
+#define SUN_LIGHT_VERTICES_A_DEPTH(passable) ((passable) ? 2u : 1u)
 
 SUN_NAMESPACE_END
 #endif

@@ -12,7 +12,11 @@ SUN_NAMESPACE_BEGIN
 #define SUN_LIGHT_VERTEX_SOLID 1u
 #define SUN_LIGHT_VERTEX_FRONT 4u
 #define SUN_LIGHT_VERTEX_CAUSTIC 8u
+#define SUN_LIGHT_VERTEX_UNSEEN 16u
 #define SUN_LIGHT_VERTEX_DEPTH_SHIFT 8
+
+// Words of a grid's entry: the vertex' position, so that those out of reach need no look at the vertex, and its number.
+#define SUN_MAP_ENTRY_WORDS 4
 
 #define SUN_SCAN_BLOCK 256   // entries that a work-item sums up
 #define SUN_SORT_BITS 8      // that a pass of the sort looks at
@@ -20,8 +24,8 @@ SUN_NAMESPACE_BEGIN
 
 #define SUN_MOST_PHOTONS 268435456  // light paths of a map
 
-// Vertices merge where their surfaces face the same way within this cosine: about 25 degrees.
-#define SUN_MERGE_COSINE 0.9f
+// Vertices merge where their surfaces face the same way within this cosine, 60 degrees: facets of a coarse mesh do, walls of a room do not.
+#define SUN_MERGE_COSINE 0.5f
 
 SUN_NAMESPACE_END
 #endif

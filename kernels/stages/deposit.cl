@@ -82,6 +82,7 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       vertex.material = surface.material;
       vertex.front = surface.front;
       vertex.caustic = (depth > zero) & (walk.rough == zero);
+      vertex.unseen = vertex.caustic & walk.unseen;
       mask joins = scatters & !only_delta(&lobes);
       Splat splat;
       splat.ray.valid = joins & !joins;
@@ -104,10 +105,6 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       }
       // Joined by an edge a path scatters at both of its ends, merged in one point once. What lights send straight to a surface is asked of them there, not of photons.
       mask joined = joins & (depth + (uint_n)(alone ? 1u : 2u) <= (uint_n)(frame->max_depth)) & (depth >= (uint_n)(photons ? 1u : 0u));
-      if (ANY(joined)) {
-        light_vertex_store(light_vertices, light_vertex_record(frame->pool, lanes.slot, walk.vertices), joined, &vertex);
-        walk.vertices = walk.vertices + (joined ? one : zero);
-      }
       // At the limit it may still go straight on through smooth thin glass, which is no scattering.
       mask limited = depth + one >= (uint_n)(frame->max_depth);
       real u_lobe = sample_1d(&key, SUN_DIM_LOBE(path.vertex));
@@ -117,10 +114,26 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       turned = scatters & !limited & scatter.valid & !scatter.straight;
       mask clear = scatters & scatter.valid & scatter.straight;
       straight = straight | clear;
+      // Where a vertex of this depth is stored already, before something that the ray went straight on through, the next is stored only if the ray does not do so again, and
+      // weighs more: so there are two at most, however many panes there are.
+      mask clears = walk.holds & lobes.delta_transmission & !bsdf.solid;
+      if (ANY(clears)) {
+        real chance_left = clears ? 1.0f - delta_chance(&lobes, wo_local.z, clears) : (real)(1.0f);
+        joined = joined & !(clears & clear) & (chance_left > 0.0f);
+        vertex.flux = scale3(vertex.flux, 1.0f / (chance_left > 0.0f ? chance_left : (real)(1.0f)));
+      }
+      vertex.presence = alone ? surface_alpha(scene, &surface, joined) : (real)(1.0f);
+      vertex.presence = joined ? vertex.presence : (real)(1.0f);
+      if (ANY(joined)) {
+        light_vertex_store(light_vertices, light_vertex_record(frame->pool, lanes.slot, walk.vertices), joined, &vertex);
+        walk.vertices = walk.vertices + (joined ? one : zero);
+        walk.holds = walk.holds | joined;
+      }
       throughput = select3(turned | clear, mul3(throughput, scatter.weight), throughput);
       walk.dVCM = turned ? left.dVCM : walk.dVCM;
       walk.dVC = turned ? left.dVC : walk.dVC;
       walk.far = walk.far & !turned;
+      walk.holds = walk.holds & !turned;
       walk.rough = walk.rough + ((turned & (scatter.pdf_solid_angle > 0.0f)) ? one : zero);
       vec3 absorbs;
       GATHER_VEC3(absorbs, scene->materials, surface.material, absorption[0]);

@@ -57,6 +57,7 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
   walk.dVCM = heuristic_ratio(frame, subpaths * inverse_camera_pdf(frame, &scene->moment, camera_direction));
   walk.dVC = (real)(0.0f);
   mask never = looks & !looks;
+  walk.holds = walk.unseen = never;
   walk.far = frame->camera.kind == SUN_CAMERA_ORTHOGRAPHIC ? !never : never;
   if (ANY(inside) && frame->emitter_count > 0 && frame->max_depth > 0) {
     uint_n vertex = (uint_n)(SUN_LIGHT_VERTEX);
@@ -75,6 +76,7 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
     path.throughput_b = e.valid ? (real)(1.0f) : path.throughput_b;
     path.vertex = e.valid ? vertex + (uint_n)(1) : path.vertex;
     walk.emitted = select3(e.valid, e.flux, walk.emitted);
+    walk.unseen = e.valid & e.pointed;
     walk.dVCM = e.valid ? e.dVCM : walk.dVCM;
     walk.dVC = e.valid ? e.dVC : walk.dVC;
     walk.far = (e.valid & e.far) | (walk.far & !e.valid);

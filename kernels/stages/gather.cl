@@ -45,7 +45,10 @@ SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, con
   side.wo_local = to_local(&surface.shading, wo);
   Lobes lobes = bsdf_lobes(&bsdf, scene->tables, side.wo_local);
   side.lobes = gathering_lobes(frame, &lobes);
-  gathers = gathers & has_lobes(&side.lobes);
+  mask blurred = gathers & blurred_facets(frame, &lobes);
+  Side facets = side;
+  facets.lobes = lobes_part(&lobes, blurred, blurred & !blurred);
+  gathers = gathers & (has_lobes(&side.lobes) | blurred);
   if (!ANY(gathers)) return;
 
   // Sums by the photons' depth, as each bounce is rounded by itself.
@@ -66,8 +69,10 @@ SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, con
     LightVertex photon = light_vertex_arrival(map.vertices, number * (uint_n)(map.records));
     vec3 to = sub3(photon.at.position, surface.position);
     BsdfEval eval = side_eval(scene, &side, photon.to_light);
+    mask unseen = some & blurred & photon.unseen;
+    if (ANY(unseen)) eval.f_cos = add3(eval.f_cos, select3(unseen, side_eval(scene, &facets, photon.to_light).f_cos, splat3((real)(0.0f))));
     // f cos counts the shading normals' cosine, flux the true one: both walks see the same surface, see transport/both_ways.h.
-    real weight = (1.0f - dot3(to, to) / (map.radius * map.radius)) / max_real(fabs(dot3(photon.to_light, photon.at.normal)), (real)(SUN_LEAST_COSINE));
+    real weight = (1.0f - dot3(to, to) / (map.radius * map.radius)) / max_real(fabs(dot3(photon.to_light, photon.at.normal)), (real)(SUN_LEAST_COSINE)) / photon.presence;
     vec3 light = scale3(mul3(eval.f_cos, photon.flux), weight);
     light = select3(some, light, splat3((real)(0.0f)));
     float rgb[3][LANES];

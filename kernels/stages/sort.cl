@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // sort: the vertices of a light map by bucket, stably: a radix sort of keys and numbers, each pass a histogram, a scan and a scatter in which every work-item owns a chunk.
 //   reads    the map's vertices
-//   writes   keys and order, twice; the table of where each bucket begins
+//   writes   keys and order, twice; the grid's entries, and the table of where each bucket begins
 //   holds    afterwards vertices of one bucket stand in the order of their numbers
 #include "transport/light_map.h"
 
@@ -39,6 +39,15 @@ __kernel void reorder_chunks(const SUN_GLOBAL uint *keys, const SUN_GLOBAL uint 
     keys_out[to] = keys[i];
     order_out[to] = order[i];
   }
+}
+
+__kernel void map_entries(const SUN_GLOBAL uint *map_vertices, uint records, uint count, const SUN_GLOBAL uint *order, SUN_GLOBAL uint *entries) {
+  uint i = (uint)get_global_id(0);
+  if (i >= count) return;
+  const SUN_GLOBAL uint *word = map_vertices + (size_t)order[i] * records * 16;
+  SUN_GLOBAL uint *entry = entries + (size_t)i * SUN_MAP_ENTRY_WORDS;
+  for (int axis = 0; axis < 3; axis++) entry[axis] = word[axis];
+  entry[3] = order[i];
 }
 
 // `starts` has an entry more than there are buckets. Each work-item fills those of the buckets behind its predecessor's, up to its own.

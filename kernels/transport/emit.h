@@ -11,6 +11,7 @@ typedef struct Emission {
   vec3 origin, direction;
   vec3 flux;         // radiance times cosine over the density of place and direction
   real dVCM, dVC;    // [Georgiev12 eq. 31, 32], without what waits for the first hit
+  mask pointed;      // from a light without extent
   mask far;          // from infinitely far: a disk across the scene stands for it
   mask valid;
 } Emission;
@@ -34,6 +35,7 @@ SUN_FN Emission sample_emission(const Scene *scene, real u_choice, real u_side, 
   mask is_environment = active & (choice.kind == (uint_n)(SUN_EMITTER_ENVIRONMENT));
   real pmf = choice.pmf > 0.0f ? choice.pmf : one;
   e.far = is_environment;
+  e.pointed = is_light;
   e.origin = splat3(zero);
   e.direction = make_vec3(zero, zero, one);
   e.flux = splat3(zero);

@@ -12,19 +12,19 @@ SUN_NAMESPACE_BEGIN
 
 typedef struct LightMap {
   const SUN_GLOBAL uint *vertices;  // `records` of 16 words each
-  const SUN_GLOBAL uint *order;     // their numbers, by bucket
-  const SUN_GLOBAL uint *starts;    // where each bucket begins in `order`, and where the last ends
+  const SUN_GLOBAL uint *entries;   // SUN_MAP_ENTRY_WORDS each, by bucket
+  const SUN_GLOBAL uint *starts;    // where each bucket begins among them, and where the last ends
   uint records, mask;               // buckets, less 1
   float radius;
 } LightMap;
 
-#define LIGHT_MAP_PARAMETERS const SUN_GLOBAL uint *map_vertices, const SUN_GLOBAL uint *map_order, const SUN_GLOBAL uint *map_starts, uint map_records, uint map_mask, float map_radius
-#define LIGHT_MAP_ARGUMENTS map_vertices, map_order, map_starts, map_records, map_mask, map_radius
+#define LIGHT_MAP_PARAMETERS const SUN_GLOBAL uint *map_vertices, const SUN_GLOBAL uint *map_entries, const SUN_GLOBAL uint *map_starts, uint map_records, uint map_mask, float map_radius
+#define LIGHT_MAP_ARGUMENTS map_vertices, map_entries, map_starts, map_records, map_mask, map_radius
 
 SUN_FN LightMap open_light_map(LIGHT_MAP_PARAMETERS) {
   LightMap map;
   map.vertices = map_vertices;
-  map.order = map_order;
+  map.entries = map_entries;
   map.starts = map_starts;
   map.records = map_records;
   map.mask = map_mask;
@@ -53,17 +53,18 @@ typedef struct MapQuery {
 SUN_FN uint map_next_1(const LightMap *map, MapQuery *q) {
   for (;;) {
     while (q->at < q->end) {
-      uint vertex = map->order[q->at];
+      const SUN_GLOBAL uint *entry = map->entries + (size_t)q->at * SUN_MAP_ENTRY_WORDS;
       q->at++;
-      const SUN_GLOBAL uint *word = map->vertices + (size_t)vertex * map->records * 16;
       float x[3], distance2 = 0.0f, facing = 0.0f;
       for (int axis = 0; axis < 3; axis++) {
-        x[axis] = as_float(word[axis]);
+        x[axis] = as_float(entry[axis]);
         float to = x[axis] - q->place[axis];
         distance2 += to * to;
-        facing += as_float(word[SUN_LIGHT_VERTEX_NORMAL + axis]) * q->normal[axis];
       }
       if (!(distance2 < map->radius * map->radius)) continue;
+      uint vertex = entry[3];
+      const SUN_GLOBAL uint *word = map->vertices + (size_t)vertex * map->records * 16;
+      for (int axis = 0; axis < 3; axis++) facing += as_float(word[SUN_LIGHT_VERTEX_NORMAL + axis]) * q->normal[axis];
       uint flags = word[SUN_LIGHT_VERTEX_FLAGS];
       // Its normal stands on the side from which it was found.
       facing = (flags & SUN_LIGHT_VERTEX_FRONT) ? facing : -facing;

@@ -17,6 +17,8 @@ typedef struct LightVertex {
   uint_n material;   // whose solid absorbs what leaves on its inner side
   mask front;        // found from the front
   mask caustic;      // every scattering before it was a delta, and there was one
+  real presence;     // chance that the surface is there for a path (alpha): where two paths merge on it, both have met it, and one of the two is to count
+  mask unseen;       // and the light is one without extent: no eye path meets it by chance
 } LightVertex;
 
 // Slot's vertex `number`: those of one number stand together.
@@ -26,15 +28,15 @@ SUN_FN void light_vertex_store(SUN_GLOBAL uint *vertices, uint_n record, mask st
   const Bsdf *b = &v->at.bsdf;
   uint_n one = (uint_n)(1), zero = (uint_n)(0);
   uint_n flags = (b->solid ? one : zero) | (b->specular ? one << (uint_n)(1) : zero) | (v->front ? one << (uint_n)(2) : zero) |
-                 (v->caustic ? (uint_n)(SUN_LIGHT_VERTEX_CAUSTIC) : zero) | (v->depth << (uint_n)(SUN_LIGHT_VERTEX_DEPTH_SHIFT));
+                 (v->unseen ? (uint_n)(SUN_LIGHT_VERTEX_UNSEEN) : zero) | (v->caustic ? (uint_n)(SUN_LIGHT_VERTEX_CAUSTIC) : zero) | (v->depth << (uint_n)(SUN_LIGHT_VERTEX_DEPTH_SHIFT));
   uint_n arrives[16] = {bits_of_real(v->at.position.x), bits_of_real(v->at.position.y), bits_of_real(v->at.position.z), flags,
                         bits_of_real(v->at.normal.x),   bits_of_real(v->at.normal.y),   bits_of_real(v->at.normal.z),   bits_of_real(v->dVCM),
                         bits_of_real(v->flux.x),        bits_of_real(v->flux.y),        bits_of_real(v->flux.z),        bits_of_real(v->dVC),
-                        bits_of_real(v->to_light.x),    bits_of_real(v->to_light.y),    bits_of_real(v->to_light.z),    bits_of_real(v->at.offset)};
+                        bits_of_real(v->to_light.x),    bits_of_real(v->to_light.y),    bits_of_real(v->to_light.z),    bits_of_real(v->presence)};
   uint_n leaves[16] = {bits_of_real(b->base.x),       bits_of_real(b->base.y),       bits_of_real(b->base.z),       bits_of_real(b->metallic),
                        bits_of_real(b->f0.x),         bits_of_real(b->f0.y),         bits_of_real(b->f0.z),         bits_of_real(b->f90),
                        bits_of_real(v->at.unbent.x),  bits_of_real(v->at.unbent.y),  bits_of_real(v->at.unbent.z),  bits_of_real(b->transmission),
-                       bits_of_real(b->alpha),        bits_of_real(b->eta),          v->material,                   zero};
+                       bits_of_real(b->alpha),        bits_of_real(b->eta),          v->material,                   bits_of_real(v->at.offset)};
   store_records(vertices, record, stored, arrives);
   store_records(vertices, record + one, stored, leaves);
 }
@@ -51,11 +53,12 @@ SUN_FN LightVertex light_vertex_arrival(const SUN_GLOBAL uint *vertices, uint_n 
   v.flux = make_vec3(real_of_bits(w[8]), real_of_bits(w[9]), real_of_bits(w[10]));
   v.dVC = real_of_bits(w[11]);
   v.to_light = make_vec3(real_of_bits(w[12]), real_of_bits(w[13]), real_of_bits(w[14]));
-  v.at.offset = real_of_bits(w[15]);
+  v.presence = real_of_bits(w[15]);
   v.at.bsdf.solid = (flags & (uint_n)(1)) != zero;
   v.at.bsdf.specular = (flags & (uint_n)(2)) != zero;
   v.front = (flags & (uint_n)(4)) != zero;
   v.caustic = (flags & (uint_n)(SUN_LIGHT_VERTEX_CAUSTIC)) != zero;
+  v.unseen = (flags & (uint_n)(SUN_LIGHT_VERTEX_UNSEEN)) != zero;
   v.at.bsdf.inside = v.at.bsdf.solid & !v.front;
   v.depth = flags >> (uint_n)(SUN_LIGHT_VERTEX_DEPTH_SHIFT);
   return v;
@@ -75,6 +78,7 @@ SUN_FN LightVertex light_vertex_load(const SUN_GLOBAL uint *vertices, uint_n rec
   b->alpha = real_of_bits(w[12]);
   b->eta = real_of_bits(w[13]);
   v.material = w[14];
+  v.at.offset = real_of_bits(w[15]);
   return v;
 }
 

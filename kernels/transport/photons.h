@@ -10,7 +10,7 @@
 SUN_NAMESPACE_BEGIN
 
 // Roughness^2 below which facets are sharp. Caustics are what deltas alone leave, so that where these have a map of their own nothing else is sharp.
-#define SUN_SHARP_ALPHA 0.01f
+#define SUN_SHARP_ALPHA 0.09f
 
 SUN_FN mask sharp_facets(const SUN_GLOBAL Frame *frame, const Lobes *l) {
   float least = (frame->flags & SUN_FRAME_FINAL_GATHER) ? 0.0f : SUN_SHARP_ALPHA;
@@ -21,6 +21,11 @@ SUN_FN mask sharp_facets(const SUN_GLOBAL Frame *frame, const Lobes *l) {
 SUN_FN Lobes gathering_lobes(const SUN_GLOBAL Frame *frame, const Lobes *l) {
   mask sharp = sharp_facets(frame, l);
   return lobes_part(l, !sharp, sharp | !sharp);
+}
+
+// Sharp facets that are no deltas look at those photons that a path does not find: what mirrors and glass make of lights without extent.
+SUN_FN mask blurred_facets(const SUN_GLOBAL Frame *frame, const Lobes *l) {
+  return frame->light_count > 0 ? sharp_facets(frame, l) & !l->delta_reflection : l->delta_reflection & !l->delta_reflection;
 }
 
 SUN_FN mask has_lobes(const Lobes *l) {

@@ -109,6 +109,14 @@ TEST(Usage, FlagsOfOneIntegrator) {
   expect_refusal({"render", cornell, "--integrator", "bdpt", "--heuristic", "maximum"}, 2, "maximum");
   expect_refusal({"render", cornell, "--integrator", "bdpt", "--crop", "0,0,8,8"}, 2, "--crop");
   expect_refusal({"render", cornell, "--integrator", "bdpt", "--max-depth", "100"}, 2, "64");
+  expect_refusal({"render", cornell, "--radius", "0.1"}, 2, "--integrator photon or --integrator sppm");
+  expect_refusal({"render", cornell, "--integrator", "sppm", "--caustic-radius", "0.1"}, 2, "--integrator photon");
+  expect_refusal({"render", cornell, "--integrator", "photon", "--alpha", "0.5"}, 2, "--integrator sppm");
+  for (const char *radius : {"0", "-1", "nan", "inf", "1e-9", "1e9"}) expect_refusal({"render", cornell, "--integrator", "sppm", "--radius", radius}, 2, "--radius");
+  expect_refusal({"render", cornell, "--integrator", "photon", "--caustic-radius", "0"}, 2, "--caustic-radius");
+  for (const char *alpha : {"0", "1.5", "nan", "-1"}) expect_refusal({"render", cornell, "--integrator", "sppm", "--alpha", alpha}, 2, "--alpha");
+  for (const char *photons : {"0", "-5", "268435457"}) expect_refusal({"render", cornell, "--integrator", "photon", "--photons", photons}, 2, "--photons");
+  expect_refusal({"render", cornell, "--integrator", "sppm", "--max-depth", "65"}, 2, "64");
   expect_refusal({"render", cornell, "--integrator", "hybrid", "--nee", "last"}, 2, "last");
   expect_refusal({"render", cornell, "--integrator", "path", "--ambient", "1,1,1"}, 2, "--integrator whitted");
   expect_refusal({"render", cornell, "--integrator", "whitted", "--ambient", "1,1"}, 2, "3 numbers");

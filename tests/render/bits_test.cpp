@@ -192,12 +192,13 @@ TEST(Bits, CropsAreWindowsOfTheWhole) {
 }
 
 TEST(Bits, BouncesSumToTheBeautyBinByBin) {
-  for (const char *integrator : {"path", "pure", "hybrid", "bdpt"}) {
+  for (const char *integrator : {"path", "pure", "hybrid", "bdpt", "sppm", "photon"}) {
     Scene without = everything();
     if (std::string(integrator) == "pure") without.lights.clear();
     RenderSettings s = settings();
     s.integrator = integrator;
     if (std::string(integrator) == "hybrid") s.light_samples = 3;
+    if (std::string(integrator) == "photon") s.photons = 5000;
     const Film film = render(Case(std::move(without)), s, samples).film;
     std::vector<std::int64_t> sum(film.layers[0].values.size());
     for (const FilmLayer &layer : film.layers)
@@ -229,6 +230,11 @@ TEST(Bits, WaysOfEveryIntegrator) {
   kinds[4].second.indirect_samples = 2;
   kinds.emplace_back(&lit_case, settings());
   kinds.back().second.integrator = "bdpt";
+  kinds.emplace_back(&lit_case, settings());
+  kinds.back().second.integrator = "sppm";
+  kinds.emplace_back(&lit_case, settings());
+  kinds.back().second.integrator = "photon";
+  kinds.back().second.photons = 5000;
   std::vector<std::string> seen;
   for (const auto &[made, s] : kinds) {
     const auto expected = hashes(render(*made, s, samples).film);
