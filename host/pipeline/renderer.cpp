@@ -428,13 +428,14 @@ StageProbe::StageProbe(Renderer &renderer, SampleRange samples) : state_(new Sta
   Renderer::State &r = state_->render;
   r.place_tile(r.tiles[0]);
   r.device_film.fill_zero();
+  state_->runner = std::make_unique<StageRunner>(r.programs, r.scene, *r.pool, r.device_frame, r.device_film);
+  r.look_at_light(*state_->runner, samples.first);
   r.frame.sample_first = static_cast<kernel::uint>(samples.first);
   r.device_frame.upload(std::span(&r.frame, 1));
   r.seen.assign(2 * SUN_COUNT_WORDS, 0);
   const std::uint64_t at_most = max_paths_of_a_launch / r.frame.paths_per_sample;
   r.seen[SUN_COUNT_PATHS] = static_cast<kernel::uint>(std::min(samples.last - samples.first, at_most) * r.frame.paths_per_sample);
   r.pool->counts.upload(r.seen);
-  state_->runner = std::make_unique<StageRunner>(r.programs, r.scene, *r.pool, r.device_frame, r.device_film);
 }
 StageProbe::~StageProbe() = default;
 StageProbe::StageProbe(StageProbe &&) noexcept = default;
