@@ -93,6 +93,9 @@ typedef struct Frame {
   float cutoff;                  // a ray whose worth is below this is not followed
   float ambient[3];              // radiance that is about in all places, for what scatters it diffusely
   uint motion_steps;             // keys less one while the shutter is open; 0: all is still
+  uint first_shape;              // instances from there on are shapes, those with bounds before the planes
+  float lower[3], upper[3];      // bounds of all instances that trees know
+  uint pad;
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 
