@@ -493,7 +493,8 @@ SUN_FN vec3 solid_transmittance(const Scene *scene, uint_n material, real distan
   vec3 left = splat3((real)(1.0f));
   if (ANY(within)) {
     vec3 a;
-    uint_n known = within ? material : (uint_n)(0);  // lanes that are not within one need not name any
+    uint_n known = material;
+    if (!LANES_ALIKE(scene)) known = within ? material : (uint_n)(0);  // lanes that are not within one need not name any
     SCENE_VEC3(a, scene, materials, known, absorption[0]);
     within = within & (max_of3(a) > 0.0f);
     if (!ANY(within)) return left;
