@@ -395,6 +395,14 @@ Bounds shape_box(const float *m, Shape::Kind kind) {
   return box;
 }
 
+// Nothing off the diagonal but the place.
+bool aligned(const float *m) {
+  for (int row = 0; row < 3; row++)
+    for (int column = 0; column < 3; column++)
+      if (row != column && m[4 * row + column] != 0) return false;
+  return true;
+}
+
 // An instance for each shape of the wanted sort, and the triangle that stands for it: it takes up the primitive number and holds the material, and its
 // corners are one point, so no ray hits it.
 void write_shapes(const Scene &scene, bool planes, bool extras, FlatScene &flat, Notices &notices) {
@@ -416,6 +424,7 @@ void write_shapes(const Scene &scene, bool planes, bool extras, FlatScene &flat,
     }
     const uint material = material_number(scene, shape.material);
     instance.flags = kind_bit(shape.kind) | (p.mirrored() ? SUN_INSTANCE_MIRRORED : 0);
+    if (aligned(instance.to_world) && aligned(instance.to_object)) instance.flags |= SUN_INSTANCE_ALIGNED;
     if (single_sided(flat.materials[material])) instance.flags |= SUN_INSTANCE_SINGLE_SIDED;
     if (flat.materials[material].flags & SUN_MATERIAL_PASSABLE) instance.flags |= SUN_INSTANCE_PASSABLE;
     take_keys(keys, instance, flat);

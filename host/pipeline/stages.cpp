@@ -84,6 +84,9 @@ Variant scene_variant(Variant variant, const FlatScene &scene, const RenderSetti
   variant.specular = scene.has_specular;
   variant.shapes = scene.shape_count > 0;
   variant.motion = scene.motion();
+  constexpr std::size_t few = 32;  // beyond, a tree is quicker than asking each
+  variant.few_shapes = scene.motion() == 0 && scene.shape_count > 0 && scene.shape_count <= few;
+  variant.triangles = scene.triangles.size() > scene.shape_count;
   variant.textures = scene.has_textures;
   return variant;
 }
@@ -108,6 +111,8 @@ const Program &Programs::whitted() const {
   if (!whitted_) {
     Switches switches = tracing(variant);
     switches["LANES"] = static_cast<int>(variant.lanes);
+    switches["SUN_FEW_SHAPES"] = variant.few_shapes;
+    switches["SUN_TRIANGLES"] = variant.triangles;
     whitted_ = build_stages(device_, "whitted", {"whitted"}, switches, 0, {});
   }
   return *whitted_;

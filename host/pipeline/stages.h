@@ -24,6 +24,7 @@ struct Variant {
   unsigned chunk = 1024;
   bool passable = true, specular = true, textures = true, shapes = true;
   int motion = 2;  // FlatScene::motion
+  bool few_shapes = false, triangles = true;  // of the fused walk
   bool branching = false;
   bool bidirectional = false;  // has the stages of light subpaths
   bool light_map = false;      // and those of a map of their vertices

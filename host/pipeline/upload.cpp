@@ -90,6 +90,17 @@ DeviceScene upload(const Device &device, const FlatScene &scene, std::span<const
   frame.light_count = static_cast<kernel::uint>(scene.lights.size());
   frame.motion_steps = scene.motion_steps;
   frame.plane_count = static_cast<kernel::uint>(scene.plane_count);
+  frame.first_shape = static_cast<kernel::uint>(scene.instances.size() - scene.shape_count);
+  Bounds known;
+  for (std::size_t i = 0; i < frame.instance_count; i++)
+    for (int axis = 0; axis < 3; axis++) {
+      known.lower[axis] = std::min(known.lower[axis], scene.instances[i].lower[axis]);
+      known.upper[axis] = std::max(known.upper[axis], scene.instances[i].upper[axis]);
+    }
+  for (int axis = 0; axis < 3; axis++) {
+    frame.lower[axis] = known.lower[axis];
+    frame.upper[axis] = known.upper[axis];
+  }
   if (scene.vertex_extras.size() == scene.vertices.size() && scene.vertices.size() > 0 && scene.has_textures) frame.flags |= SUN_FRAME_EXTRAS;
   if (!scene.bounds.empty()) {
     const glm::vec3 center = (scene.bounds.lower + scene.bounds.upper) * 0.5f, half = scene.bounds.upper - center;

@@ -67,13 +67,15 @@ SUN_FN BsdfEval lobes_eval(const Lobes *l, const SUN_GLOBAL float *tables, vec3 
   real cosine_o = clamp_real(wo.z, (real)(SUN_MIN_COSINE), (real)(1.0f)), cosine_i = clamp_real(fabs(wi.z), (real)(SUN_MIN_COSINE), (real)(1.0f));
   vec3 f = select3(upper, l->diffuse, splat3(zero));
   e.pdf = (upper ? l->pick_above : l->pick_below) * (cosine_i * SUN_INV_PI);
-  if (ANY(l->specular)) {
+  if (ANY(l->coated)) {
     Split at_i = split_albedo(tables, l->alpha_axis, cosine_i);
     f = scale3(f, 1.0f - (l->s0 * at_i.a + l->s90 * at_i.b + l->s_lost * at_i.lost));
     f = add3(f, scale3(select3(upper, l->above, l->below), at_i.lost));
+  }
+  if (ANY(l->specular)) {
     e.pdf = e.pdf + (upper ? l->pick_grazing_above : l->pick_grazing_below) * grazing_hemisphere_pdf(cosine_i);
   }
-  if (ANY(l->some_glass)) {
+  if (ANY(l->rough_glass)) {
     mask thinner = l->eta < 1.0f;
     uint_n side = (upper & thinner) | (!upper & !thinner) ? (uint_n)(1) : (uint_n)(0);
     real lost = max_real(1.0f - glass_albedo(tables, side, l->eta_axis, l->alpha_axis, cosine_i), zero);

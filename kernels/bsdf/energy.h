@@ -27,11 +27,16 @@ SUN_FN TableCell table_cell(real axis, float nodes) {
   return cell;
 }
 
+// A node that is met exactly (smooth surfaces lie on the first) needs no neighbour.
 SUN_FN real table_linear(const SUN_GLOBAL float *table, uint_n at, real towards) {
-  return lerp_real(gather_real(table, at), gather_real(table + 1, at), towards);
+  real here = gather_real(table, at);
+  if (!ANY(towards != 0.0f)) return here;
+  return lerp_real(here, gather_real(table + 1, at), towards);
 }
 SUN_FN real table_bilinear(const SUN_GLOBAL float *table, uint_n at, uint row, real towards_next, real towards_row) {
-  return lerp_real(table_linear(table, at, towards_next), table_linear(table + row, at, towards_next), towards_row);
+  real here = table_linear(table, at, towards_next);
+  if (!ANY(towards_row != 0.0f)) return here;
+  return lerp_real(here, table_linear(table + row, at, towards_next), towards_row);
 }
 
 // Directional albedo of the reflecting lobe: F0 * a + F90 * b; lost = 1 - a - b.

@@ -31,7 +31,9 @@ typedef struct Lobes {
   real glass, glass_f90;   // share of solid glass
   real eta, alpha;
   real eta_axis, alpha_axis;  // places in the tables
+  mask coated;             // reflects by the tables of GGX: has metal, or a coat of Schlick's
   mask some_glass;         // glass > 0
+  mask rough_glass;        // and loses light among its facets
   mask refracts;           // solid
   mask delta_reflection, delta_transmission;
   vec3 diffuse;            // times 1 - S(i)
@@ -65,13 +67,15 @@ SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
   l.glass_f90 = b->f90;
   l.glass_tint = scale3(b->base, l.glass);
   l.some_glass = l.glass > 0.0f;
+  l.coated = b->specular & ((dielectric - l.glass > 0.0f) | (b->metallic > 0.0f));
   l.delta_reflection = smooth;
   l.delta_transmission = smooth | (b->solid & (fabs(b->eta - 1.0f) < SUN_SAME_IOR));
+  l.rough_glass = l.some_glass & !l.delta_transmission;
   l.diffuse = scale3(b->base, (dielectric - clear) * SUN_INV_PI);
   l.r0 = l.r90 = l.t0 = l.t90 = l.above = l.below = l.glass_below = black;
   l.s0 = l.s90 = l.s_lost = l.glass_above = zero;
   real facets = zero, base = luminance(l.diffuse) * SUN_PI, above = zero, below = zero;  // albedos
-  if (ANY(b->specular)) {
+  if (ANY(l.coated)) {  // of lanes that are not, all of this is 0, whatever the tables say
     real coat = b->specular ? dielectric - l.glass : zero;  // the share with a Schlick coat
     real metal = b->specular ? b->metallic : zero;
     vec3 thin = scale3(b->base, coat - (b->specular ? dielectric - clear : zero));
@@ -100,21 +104,22 @@ SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
     above = luminance(l.above) * mean.lost * SUN_PI;
     below = luminance(l.below) * mean.lost * SUN_PI;
   }
-  if (ANY(l.some_glass)) {
+  real lost = zero;
+  if (ANY(l.rough_glass)) {
     // Lost light leaves on either side so that the pair is reciprocal, (1 - above) (1 - Emean) n^2 being the same from both sides [Kulla17].
     uint_n side = l.eta < 1.0f ? (uint_n)(1) : (uint_n)(0), far_side = (uint_n)(1) - side;
     real mean_lost = 1.0f - glass_mean(tables, side, l.eta_axis, l.alpha_axis);
     real far_lost = 1.0f - glass_mean(tables, far_side, l.eta_axis, l.alpha_axis);
     // A facet that reflects less than Fresnel asks loses less than the tables say; f90 keeps the sum below 1.
-    real lost = max_real(1.0f - glass_albedo(tables, side, l.eta_axis, l.alpha_axis, cosine_o), zero) * b->f90;
-    lost = (l.some_glass & !l.delta_transmission) ? lost : zero;
+    lost = max_real(1.0f - glass_albedo(tables, side, l.eta_axis, l.alpha_axis, cosine_o), zero) * b->f90;
+    lost = l.rough_glass ? lost : zero;
     real through = mean_transmittance(l.eta) * min_real(mean_lost, far_lost) / max_real(mean_lost, (real)(1e-6f));
     l.glass_above = l.glass * (1.0f - through) * lost * lobe_scale(mean_lost);
     l.glass_below = scale3(l.glass_tint, through * lost * lobe_scale(far_lost) / (l.eta * l.eta));
-    facets = facets + l.glass * (1.0f - lost);
     above = above + l.glass * (1.0f - through) * lost;
     below = below + luminance(l.glass_tint) * through * lost;
   }
+  facets = facets + l.glass * (1.0f - lost);
   // A floor keeps a faint highlight from being left to rare, heavy samples.
   facets = facets > 0.0f ? max_real(facets, 0.1f * (facets + base + above + below)) : zero;
   real total = facets + base + above + below;
@@ -126,6 +131,12 @@ SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
   l.pick_grazing_above = above * grazing / total;
   l.pick_grazing_below = below * grazing / total;
   return l;
+}
+
+// Where anything but deltas may be: elsewhere lobes_eval gives black.
+SUN_FN mask lobes_spread(const Lobes *l) {
+  real most = max_real(max_of3(l->diffuse), max_real(max_of3(l->above), max_of3(l->below)));
+  return (most > 0.0f) | l->rough_glass | (l->specular & !(l->delta_reflection & l->delta_transmission));
 }
 
 // The facets alone, either what they reflect or what they transmit: an effect to be followed by rays of its own.

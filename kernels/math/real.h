@@ -16,6 +16,18 @@
 #endif
 #endif
 
+// Not any(): PoCL makes a chain of branches of it. Where clang can tell, one instruction.
+#define SUN_ANY(m) any(m)
+#define SUN_ALL(m) all(m)
+#if !defined(__cplusplus) && defined(__has_builtin)
+#if __has_builtin(__builtin_reduce_or)
+#undef SUN_ANY
+#undef SUN_ALL
+#define SUN_ANY(m) (__builtin_reduce_or((m) < 0) != 0)
+#define SUN_ALL(m) (__builtin_reduce_and((m) < 0) != 0)
+#endif
+#endif
+
 SUN_NAMESPACE_BEGIN
 
 #if LANES == 1
@@ -28,13 +40,15 @@ typedef int mask;
 #define LANES_STORE(v, array) ((array)[0] = (v))
 #define LANES_LOAD(array) ((array)[0])
 #define LANE_NUMBERS 0
+#define FIRST_LANE(v) (v)
 #elif LANES == 8
 typedef float8 real;
 typedef int8 int_n;
 typedef uint8 uint_n;
 typedef int8 mask;
-#define ANY(m) any(m)
-#define ALL(m) all(m)
+#define ANY(m) SUN_ANY(m)
+#define ALL(m) SUN_ALL(m)
+#define FIRST_LANE(v) ((v).s0)
 #define LANES_STORE(v, array) vstore8((v), 0, (array))
 #define LANES_LOAD(array) vload8(0, (array))
 #define LANE_NUMBERS (int8)(0, 1, 2, 3, 4, 5, 6, 7)
@@ -43,8 +57,9 @@ typedef float16 real;
 typedef int16 int_n;
 typedef uint16 uint_n;
 typedef int16 mask;
-#define ANY(m) any(m)
-#define ALL(m) all(m)
+#define ANY(m) SUN_ANY(m)
+#define ALL(m) SUN_ALL(m)
+#define FIRST_LANE(v) ((v).s0)
 #define LANES_STORE(v, array) vstore16((v), 0, (array))
 #define LANES_LOAD(array) vload16(0, (array))
 #define LANE_NUMBERS (int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
@@ -121,6 +136,22 @@ SUN_FN uint_n gather_uint(const SUN_GLOBAL uint *table, uint_n index) {
   for (int lane = 0; lane < LANES; lane++) value[lane] = LANE_WORD(uint, table[at[lane]]);
   return LANES_LOAD(value);
 }
+
+// The least of the lanes.
+#if LANES == 1
+SUN_FN uint least_lane(uint_n v) { return v; }
+#else
+SUN_FN uint least_lane(uint_n v) {
+#if LANES == 16
+  const uint8 halves = min(v.lo, v.hi);
+#else
+  const uint8 halves = v;
+#endif
+  const uint4 quarters = min(halves.lo, halves.hi);
+  const uint2 two = min(quarters.lo, quarters.hi);
+  return min(two.x, two.y);
+}
+#endif
 
 SUN_NAMESPACE_END
 #endif

@@ -51,6 +51,20 @@ SUN_INLINE Quad quad_of_rows(const uint *rows) {
   } while (0)
 #endif
 
+// The same, read once where all lanes name the record `first`.
+#define RECORD_QUAD(out, alike, first, records, index, field)                              \
+  do {                                                                                     \
+    if (alike) {                                                                           \
+      const SUN_GLOBAL uint *quad_words = (const SUN_GLOBAL uint *)&(records)[first].field; \
+      (out).x = (uint_n)(quad_words[0]);                                                   \
+      (out).y = (uint_n)(quad_words[1]);                                                   \
+      (out).z = (uint_n)(quad_words[2]);                                                   \
+      (out).w = (uint_n)(quad_words[3]);                                                   \
+    } else {                                                                               \
+      GATHER_QUAD(out, records, index, field);                                             \
+    }                                                                                      \
+  } while (0)
+
 #if LANES == 16
 #define INTERLEAVE_LOW(a, b) (uint16)((a).s0, (b).s0, (a).s1, (b).s1, (a).s2, (b).s2, (a).s3, (b).s3, (a).s4, (b).s4, (a).s5, (b).s5, (a).s6, (b).s6, (a).s7, (b).s7)
 #define INTERLEAVE_HIGH(a, b) (uint16)((a).s8, (b).s8, (a).s9, (b).s9, (a).sa, (b).sa, (a).sb, (b).sb, (a).sc, (b).sc, (a).sd, (b).sd, (a).se, (b).se, (a).sf, (b).sf)

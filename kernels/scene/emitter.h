@@ -90,9 +90,24 @@ SUN_FN LightLanes load_lights(const SUN_GLOBAL Light *lights, uint_n light) {
   return lanes;
 }
 
+// One record for all lanes.
+SUN_FN LightLanes load_light(const SUN_GLOBAL Light *lights, uint light) {
+  const SUN_GLOBAL Light *l = lights + light;
+  LightLanes lanes;
+  lanes.kind = (uint_n)(l->kind & SUN_LIGHT_KIND);
+  lanes.keys = (uint_n)(l->kind >> SUN_LIGHT_KEYS_SHIFT);
+  lanes.place = make_vec3((real)(l->position[0]), (real)(l->position[1]), (real)(l->position[2]));
+  lanes.axis = make_vec3((real)(l->direction[0]), (real)(l->direction[1]), (real)(l->direction[2]));
+  lanes.intensity = make_vec3((real)(l->intensity[0]), (real)(l->intensity[1]), (real)(l->intensity[2]));
+  lanes.cos_outer = (real)(l->cos_outer);
+  lanes.cos_inner = (real)(l->cos_inner);
+  return lanes;
+}
+
 // Share of a spot's intensity that leaves under this cosine to its axis: the ramp between the cosines of its angles, squared; a ramp narrower than 0.001
 // counts as that. 1 for other lights.
 SUN_FN real spot_share(const LightLanes *l, real cosine) {
+  if (!ANY(l->kind == (uint_n)(SUN_LIGHT_SPOT))) return (real)(1.0f);
   real ramp = (cosine - l->cos_outer) / max_real(l->cos_inner - l->cos_outer, (real)(0.001f));
   ramp = clamp_real(ramp, (real)(0.0f), (real)(1.0f));
   return l->kind == (uint_n)(SUN_LIGHT_SPOT) ? ramp * ramp : (real)(1.0f);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ray, and the ray made ready for one space (the world, or an instance's). Plain floats: one ray per work-item, whatever LANES is.
+// A ray, and the ray made ready for one space (the world, or an instance's). Plain floats: one ray per work-item, whatever LANES is; beside it LANES of
+// them at once, by the same arithmetic.
 //
-// Every box of every layout is tested by one function, the slabs of prepare_ray: the ray meets the plane at bound b at
+// Every box of every layout is tested by one function, the slabs of slab_of: the ray meets the plane at bound b at
 //   t(b) = fma(b, reciprocal, offset).
 // That is the rounding of a monotone function, so where one box contains another, so do their intervals, exactly. It is also conservative
 // [Woop13, Ize13]: the offsets move near planes nearer and far planes farther by more than the edge test of triangle.h and the slabs themselves can
 // err.
 #ifndef SUN_SCENE_RAY_H
 #define SUN_SCENE_RAY_H
-#include "math/real.h"
+#include "math/vector.h"
 #include "shared/geometry.h"
 #include "shared/motion.h"
 #include "shared/types.h"
@@ -52,6 +53,32 @@ typedef struct Interval {
 
 SUN_INLINE float pick(float x, float y, float z, int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
 
+// One axis of the slabs: the function above.
+typedef struct Slab {
+  real reciprocal, near_offset, far_offset;
+} Slab;
+
+// Directions parallel to a slab get a large finite reciprocal: no 0 * infinity in it. `largest`: the size of the direction's largest component.
+SUN_INLINE real least_direction(real largest) {
+  const real tiny = largest * 8.67361738e-19f, least = (real)(7.88860905e-31f);  // 2^-60, 2^-100
+  return SUN_GREATER(tiny, least);
+}
+
+// Along one axis: the ray, how far any vertex of this space lies from its origin, and the same along the direction's largest component.
+SUN_INLINE Slab slab_of(real origin, real direction, real least, real reach, real reach_along) {
+  const real r = 1.0f / (fabs(direction) < least ? copysign(least, direction) : direction);
+  // With u = 2^-24, a sheared vertex errs by at most u (2 |vertex - origin| + 5 |along z|), a slab by u (2 |bound - origin| + 2 |origin|).
+  const real error = fma((real)(9.53674316e-07f), reach + reach_along, 4.76837158e-07f * fabs(origin)) * fabs(r);  // 16u, 8u
+  const real most = (real)(1e38f), margin = SUN_LESSER(error, most);
+  const real product = -(origin * r);
+  const real offset = product < -1e38f ? -most : SUN_LESSER(product, most);
+  Slab slab;
+  slab.reciprocal = r;
+  slab.near_offset = offset - margin;
+  slab.far_offset = offset + margin;
+  return slab;
+}
+
 // `reach` bounds, by axis, how far a vertex of this space lies from the origin: it scales the rounding errors that the slabs make up for.
 // False where the ray has no direction or is not finite: it hits nothing.
 SUN_INLINE int prepare_ray(PreparedRay *ray, const float *origin, const float *direction, const float *reach) {
@@ -61,23 +88,16 @@ SUN_INLINE int prepare_ray(PreparedRay *ray, const float *origin, const float *d
   const float along = pick(direction[0], direction[1], direction[2], kz);
   const float largest = fabs(along);
   int usable = largest > 0.0f;
-  // Directions parallel to a slab get a large finite reciprocal: no 0 * infinity below.
-  const float tiny = largest * 8.67361738e-19f, least = 7.88860905e-31f;  // 2^-60, 2^-100
-  const float floor_direction = SUN_GREATER(tiny, least);
+  const real least = least_direction((real)(largest));
   const float reach_z = pick(reach[0], reach[1], reach[2], kz);
   for (int axis = 0; axis < 3; axis++) {
     const float o = origin[axis], d = direction[axis];
     usable = usable & (fabs(o) <= SUN_LARGEST) & (fabs(d) <= SUN_LARGEST);
-    const float r = 1.0f / (fabs(d) < floor_direction ? copysign(floor_direction, d) : d);
-    // With u = 2^-24, a sheared vertex errs by at most u (2 |vertex - origin| + 5 |along z|), a slab by u (2 |bound - origin| + 2 |origin|).
-    const float error = fma(9.53674316e-07f, reach[axis] + reach_z, 4.76837158e-07f * fabs(o)) * fabs(r);  // 16u, 8u
-    const float margin = error < 1e38f ? error : 1e38f;
-    const float product = -(o * r);
-    const float offset = product < -1e38f ? -1e38f : product < 1e38f ? product : 1e38f;
-    ray->reciprocal[axis] = r;
-    ray->near_offset[axis] = offset - margin;
-    ray->far_offset[axis] = offset + margin;
-    ray->negative[axis] = r < 0.0f;
+    const Slab slab = slab_of((real)(o), (real)(d), least, (real)(reach[axis]), (real)(reach_z));
+    ray->reciprocal[axis] = FIRST_LANE(slab.reciprocal);
+    ray->near_offset[axis] = FIRST_LANE(slab.near_offset);
+    ray->far_offset[axis] = FIRST_LANE(slab.far_offset);
+    ray->negative[axis] = ray->reciprocal[axis] < 0.0f;
   }
   if (along < 0.0f) {  // keeps the winding, so that the sign of the determinant tells front from back
     const int k = kx;
@@ -97,36 +117,109 @@ SUN_INLINE int prepare_ray(PreparedRay *ray, const float *origin, const float *d
   return usable;
 }
 
-SUN_INLINE float near_plane(const PreparedRay *ray, int axis, float lower, float upper) {
-  return fma(ray->negative[axis] ? upper : lower, ray->reciprocal[axis], ray->near_offset[axis]);
+// Slabs of LANES rays.
+typedef struct LaneSlabs {
+  Slab x, y, z;
+  mask negative_x, negative_y, negative_z;  // the direction points to smaller values: the near plane is then the upper one
+  mask usable;                              // else the ray has no direction or is not finite: it hits nothing
+} LaneSlabs;
+
+// Intervals of t of LANES rays.
+typedef struct LaneInterval {
+  real near, far;
+} LaneInterval;
+
+SUN_INLINE real near_plane(const Slab *slab, mask negative, float lower, float upper) {
+  return fma(negative ? (real)(upper) : (real)(lower), slab->reciprocal, slab->near_offset);
 }
-SUN_INLINE float far_plane(const PreparedRay *ray, int axis, float lower, float upper) {
-  return fma(ray->negative[axis] ? lower : upper, ray->reciprocal[axis], ray->far_offset[axis]);
+SUN_INLINE real far_plane(const Slab *slab, mask negative, float lower, float upper) {
+  return fma(negative ? (real)(lower) : (real)(upper), slab->reciprocal, slab->far_offset);
 }
 
-// Where the ray is inside a box, from `from` on (not negative; never gives -0).
-SUN_INLINE Interval box_interval(const PreparedRay *ray, float lx, float ly, float lz, float ux, float uy, float uz, float from) {
-  const float nx = near_plane(ray, 0, lx, ux), ny = near_plane(ray, 1, ly, uy), nz = near_plane(ray, 2, lz, uz);
-  const float fx = far_plane(ray, 0, lx, ux), fy = far_plane(ray, 1, ly, uy), fz = far_plane(ray, 2, lz, uz);
-  const float n = SUN_GREATER(nx, ny), m = SUN_GREATER(n, nz), f = SUN_LESSER(fx, fy);
-  Interval interval;
+// Where the rays are inside a box, from `from` on (not negative; never gives -0).
+SUN_INLINE LaneInterval box_lanes(const LaneSlabs *slabs, float lx, float ly, float lz, float ux, float uy, float uz, real from) {
+  const real nx = near_plane(&slabs->x, slabs->negative_x, lx, ux), fx = far_plane(&slabs->x, slabs->negative_x, lx, ux);
+  const real ny = near_plane(&slabs->y, slabs->negative_y, ly, uy), fy = far_plane(&slabs->y, slabs->negative_y, ly, uy);
+  const real nz = near_plane(&slabs->z, slabs->negative_z, lz, uz), fz = far_plane(&slabs->z, slabs->negative_z, lz, uz);
+  const real n = SUN_GREATER(nx, ny), m = SUN_GREATER(n, nz), f = SUN_LESSER(fx, fy);
+  LaneInterval interval;
   interval.near = SUN_GREATER(m, from);
   interval.far = SUN_LESSER(f, fz);
   return interval;
 }
 
+SUN_INLINE void note_signs(LaneSlabs *slabs) {
+  slabs->negative_x = slabs->x.reciprocal < 0.0f;
+  slabs->negative_y = slabs->y.reciprocal < 0.0f;
+  slabs->negative_z = slabs->z.reciprocal < 0.0f;
+}
+
+// Those of one ray in all lanes.
+SUN_INLINE LaneSlabs slabs_of_ray(const PreparedRay *ray) {
+  LaneSlabs slabs;
+  Slab slab[3];
+  for (int axis = 0; axis < 3; axis++) {
+    slab[axis].reciprocal = (real)(ray->reciprocal[axis]);
+    slab[axis].near_offset = (real)(ray->near_offset[axis]);
+    slab[axis].far_offset = (real)(ray->far_offset[axis]);
+  }
+  slabs.x = slab[0];
+  slabs.y = slab[1];
+  slabs.z = slab[2];
+  note_signs(&slabs);
+  slabs.usable = slabs.negative_x | !slabs.negative_x;
+  return slabs;
+}
+
+// Where one ray is inside a box.
+SUN_INLINE Interval box_interval(const PreparedRay *ray, float lx, float ly, float lz, float ux, float uy, float uz, float from) {
+  const LaneSlabs slabs = slabs_of_ray(ray);
+  const LaneInterval inside = box_lanes(&slabs, lx, ly, lz, ux, uy, uz, (real)(from));
+  Interval interval;
+  interval.near = FIRST_LANE(inside.near);
+  interval.far = FIRST_LANE(inside.far);
+  return interval;
+}
+
 // Distance from the origin to the farther of two bounds.
-SUN_INLINE float farther(float lower, float upper, float origin) {
-  const float a = fabs(lower - origin), b = fabs(upper - origin);
+SUN_INLINE real farther(float lower, float upper, real origin) {
+  const real a = fabs(lower - origin), b = fabs(upper - origin);
   return SUN_GREATER(a, b);
 }
 
-// A ray in an instance's space: t stays the same, so the direction is not normalised.
+// LANES rays made ready for a space of these bounds.
+SUN_INLINE LaneSlabs slabs_of_lanes(vec3 origin, vec3 direction, const SUN_GLOBAL float *lower, const SUN_GLOBAL float *upper) {
+  const real ax = fabs(direction.x), ay = fabs(direction.y), az = fabs(direction.z);
+  const real reach_x = farther(lower[0], upper[0], origin.x), reach_y = farther(lower[1], upper[1], origin.y), reach_z = farther(lower[2], upper[2], origin.z);
+  const mask x_over_y = ax > ay;
+  const real of_xy = x_over_y ? ax : ay, reach_xy = x_over_y ? reach_x : reach_y;
+  const mask xy_over_z = of_xy > az;
+  const real largest = xy_over_z ? of_xy : az, reach_along = xy_over_z ? reach_xy : reach_z, least = least_direction(largest);
+  LaneSlabs slabs;
+  slabs.x = slab_of(origin.x, direction.x, least, reach_x, reach_along);
+  slabs.y = slab_of(origin.y, direction.y, least, reach_y, reach_along);
+  slabs.z = slab_of(origin.z, direction.z, least, reach_z, reach_along);
+  note_signs(&slabs);
+  slabs.usable = (largest > 0.0f) & (ax <= SUN_LARGEST) & (ay <= SUN_LARGEST) & (az <= SUN_LARGEST) & (fabs(origin.x) <= SUN_LARGEST) &
+                 (fabs(origin.y) <= SUN_LARGEST) & (fabs(origin.z) <= SUN_LARGEST);
+  return slabs;
+}
+
+// Rays in an instance's space: t stays the same, so the direction is not normalised.
+SUN_INLINE real origin_in_instance(const SUN_GLOBAL Instance *instance, int row, vec3 origin) {
+  const SUN_GLOBAL float *m = instance->to_object + 4 * row;
+  return fma((real)(m[0]), origin.x, fma((real)(m[1]), origin.y, fma((real)(m[2]), origin.z, (real)(m[3]))));
+}
+SUN_INLINE real direction_in_instance(const SUN_GLOBAL Instance *instance, int row, vec3 direction) {
+  const SUN_GLOBAL float *m = instance->to_object + 4 * row;
+  return fma((real)(m[0]), direction.x, fma((real)(m[1]), direction.y, m[2] * direction.z));
+}
 SUN_INLINE void to_instance(const SUN_GLOBAL Instance *instance, const Ray *ray, float *origin, float *direction) {
+  const vec3 from = make_vec3((real)(ray->origin[0]), (real)(ray->origin[1]), (real)(ray->origin[2]));
+  const vec3 along = make_vec3((real)(ray->direction[0]), (real)(ray->direction[1]), (real)(ray->direction[2]));
   for (int row = 0; row < 3; row++) {
-    const float a = instance->to_object[4 * row], b = instance->to_object[4 * row + 1], c = instance->to_object[4 * row + 2];
-    origin[row] = fma(a, ray->origin[0], fma(b, ray->origin[1], fma(c, ray->origin[2], instance->to_object[4 * row + 3])));
-    direction[row] = fma(a, ray->direction[0], fma(b, ray->direction[1], c * ray->direction[2]));
+    origin[row] = FIRST_LANE(origin_in_instance(instance, row, from));
+    direction[row] = FIRST_LANE(direction_in_instance(instance, row, along));
   }
 }
 

@@ -33,6 +33,7 @@ typedef struct Scene {
   const SUN_GLOBAL float *environment_texels;
   const SUN_GLOBAL float *environment_cdf;
   TexturePages pages;
+  int alike;  // all lanes ask for records of one instance, one material: they are read once (LANES_ALIKE)
 } Scene;
 
 // The buffers of a scene, as every kernel that shades takes them.
@@ -67,6 +68,7 @@ SUN_FN Scene open_scene(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS) {
   scene.pages.page[1] = page1;
   scene.pages.page[2] = page2;
   scene.pages.page[3] = page3;
+  scene.alike = 0;
   return scene;
 }
 
@@ -97,6 +99,31 @@ SUN_FN void at_moment(Scene *scene, const SamplerKey *key) {
     Quad vec3_quad;                                                                                     \
     GATHER_QUAD(vec3_quad, records, index, field);                                                      \
     (out) = make_vec3(real_of_bits(vec3_quad.x), real_of_bits(vec3_quad.y), real_of_bits(vec3_quad.z)); \
+  } while (0)
+
+// A field of the scene's records: SCENE_FLOAT(roughness, scene, materials, index, roughness). Where kernels sort their lanes by shape, those of one shape name
+// the same record, which is read once; `alike` of other kernels is 0 when they are compiled.
+#define LANES_ALIKE(scene) (SUN_FEW_SHAPES && (scene)->alike)
+#define SCENE_FLOAT(out, scene, records, index, field)             \
+  do {                                                             \
+    if (LANES_ALIKE(scene))                                        \
+      (out) = (real)((scene)->records[FIRST_LANE(index)].field);   \
+    else                                                           \
+      GATHER_FLOAT(out, (scene)->records, index, field);           \
+  } while (0)
+#define SCENE_UINT(out, scene, records, index, field)              \
+  do {                                                             \
+    if (LANES_ALIKE(scene))                                        \
+      (out) = (uint_n)((scene)->records[FIRST_LANE(index)].field); \
+    else                                                           \
+      GATHER_UINT(out, (scene)->records, index, field);            \
+  } while (0)
+#define SCENE_QUAD(out, scene, records, index, field) RECORD_QUAD(out, LANES_ALIKE(scene), FIRST_LANE(index), (scene)->records, index, field)
+#define SCENE_VEC3(out, scene, records, index, field)                                                           \
+  do {                                                                                                          \
+    Quad scene_quad;                                                                                            \
+    SCENE_QUAD(scene_quad, scene, records, index, field);                                                       \
+    (out) = make_vec3(real_of_bits(scene_quad.x), real_of_bits(scene_quad.y), real_of_bits(scene_quad.z));      \
   } while (0)
 
 SUN_NAMESPACE_END

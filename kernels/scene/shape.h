@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hit test of analytic shapes (shared/geometry.h says what they are), in the shape's own space, and by the rules of triangle.h: the ray passes the
-// instance's world box, and t is clamped into that; (t, instance, primitive) lies strictly between what the ray passed and the best hit so far. A shape
+// The hit test of analytic shapes (shared/geometry.h says what they are), in the shape's own space, and by the rules of triangle.h: it lies ahead, before the
+// ray's end; the ray passes the instance's world box, and t is clamped into that; (t, instance, primitive) lies strictly between what the ray passed and the best hit so far. A shape
 // has one primitive number, so where a ray meets a sphere twice the nearer that counts is taken. Planes have no box.
 // A hit's u and v name the point: x and z of what lies in y = 0; of a sphere the direction from its centre, by the octahedron [Meyer10].
+// LANES rays meet a shape at once; a tree's traversal, which has one, fills the lanes with it.
 #ifndef SUN_SCENE_SHAPE_H
 #define SUN_SCENE_SHAPE_H
 #include "scene/triangle.h"
@@ -10,76 +11,187 @@
 SUN_NAMESPACE_BEGIN
 
 // The direction (x, y, z), of any length but 0, as a point of the square from -1 to 1: projected onto |x| + |y| + |z| = 1, the lower half folded out.
-SUN_INLINE void encode_octahedron(float x, float y, float z, float *u, float *v) {
-  const float inverse = 1.0f / (fabs(x) + fabs(y) + fabs(z));
-  const float a = x * inverse, b = z * inverse;
-  *u = y < 0.0f ? copysign(1.0f - fabs(b), a) : a;
-  *v = y < 0.0f ? copysign(1.0f - fabs(a), b) : b;
+SUN_INLINE vec2 encode_octahedron(vec3 d) {
+  const real inverse = 1.0f / (fabs(d.x) + fabs(d.y) + fabs(d.z));
+  const real a = d.x * inverse, b = d.z * inverse;
+  const mask lower = d.y < 0.0f;
+  return make_vec2(lower ? copysign(1.0f - fabs(b), a) : a, lower ? copysign(1.0f - fabs(a), b) : b);
 }
 
-// The distances at which the ray meets a sphere, the nearer first: false where it passes by. Neither root cancels, and the discriminant is found from
+// The distances at which rays that are on meet a sphere, the nearer first: false where they pass by. Neither root cancels, and the discriminant is found from
 // the point of the ray that is nearest to the centre, so spheres far away keep their outline [Haines19].
-SUN_INLINE int meet_sphere(const float *origin, const float *direction, float *near, float *far) {
-  const float a = direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2];
-  const float b = -(origin[0] * direction[0] + origin[1] * direction[1] + origin[2] * direction[2]);
-  const float middle = b / a;
-  const float x = fma(middle, direction[0], origin[0]), y = fma(middle, direction[1], origin[1]), z = fma(middle, direction[2], origin[2]);
-  const float discriminant = 1.0f - (x * x + y * y + z * z);
-  if (!(discriminant >= 0.0f)) return 0;
-  const float q = b + copysign(sqrt(discriminant * a), b);
-  const float c = origin[0] * origin[0] + origin[1] * origin[1] + origin[2] * origin[2] - 1.0f;
-  const float one = q / a, other = q != 0.0f ? c / q : one;
+SUN_INLINE mask meet_sphere(vec3 origin, vec3 direction, mask on, real *near, real *far) {
+  const real a = dot3(direction, direction), b = -dot3(origin, direction);
+  const real middle = b / a;
+  const real x = fma(middle, direction.x, origin.x), y = fma(middle, direction.y, origin.y), z = fma(middle, direction.z, origin.z);
+  const real discriminant = 1.0f - (x * x + y * y + z * z);
+  const mask meets = on & (discriminant >= 0.0f);
+  *near = *far = (real)(0.0f);
+  if (!ANY(meets)) return meets;
+  const real q = b + copysign(sqrt((meets ? discriminant : (real)(0.0f)) * a), b);
+  const real c = dot3(origin, origin) - 1.0f;
+  const real one = q / a, other = q != 0.0f ? c / q : one;
   *near = SUN_LESSER(one, other);
   *far = SUN_GREATER(one, other);
-  return 1;
+  return meets;
 }
 
-// Takes the nearest hit of a shape that counts; true if there is one.
+// LANES rays that look for shapes. Slabs are made when the first box is asked: most rays that meet nothing never do.
+typedef struct ShapeRays {
+  vec3 origin, direction;
+  real t_max;
+  const SUN_GLOBAL float *lower, *upper;  // bounds of the world
+  int ready;                              // are the slabs?
+  LaneSlabs slabs;
+} ShapeRays;
+
+// What counts: keys (t, instance, primitive) strictly between the one that was passed and the best so far, the instance being known.
+typedef struct ShapeSearch {
+  real passed_t, best_t;
+  uint_n first_primitive;  // at t == passed_t hits count from this number on,
+  uint_n end_primitive;    // and at t == best_t before that one
+} ShapeSearch;
+
+typedef struct ShapeHit {
+  mask counts;
+  real t;
+  vec3 place;  // in the shape's space
+} ShapeHit;
+
+// A distance at which the rays' lines meet the shape, ahead and not beyond the ray's end: does it count?
+SUN_INLINE ShapeHit count_met(uint primitive, vec3 place, LaneInterval inside, const ShapeSearch *search, real met, mask on) {
+  ShapeHit hit;
+  hit.place = place;
+  hit.t = met < inside.near ? inside.near : met;
+  hit.t = hit.t > inside.far ? inside.far : hit.t;
+  const mask behind = (hit.t > search->passed_t) | ((hit.t == search->passed_t) & ((uint_n)(primitive) >= search->first_primitive));
+  const mask before = (hit.t < search->best_t) | ((hit.t == search->best_t) & ((uint_n)(primitive) < search->end_primitive));
+  hit.counts = on & behind & before;
+  return hit;
+}
+
+SUN_INLINE vec3 place_along(vec3 origin, vec3 direction, real t) {
+  return make_vec3(fma(t, direction.x, origin.x), fma(t, direction.y, origin.y), fma(t, direction.z, origin.z));
+}
+
+// Where the rays are inside the shape's box, and whether they are.
+SUN_INLINE mask enter_box(const SUN_GLOBAL Instance *instance, ShapeRays *rays, LaneInterval *inside) {
+  if (!rays->ready) {
+    rays->slabs = slabs_of_lanes(rays->origin, rays->direction, rays->lower, rays->upper);
+    rays->ready = 1;
+  }
+  *inside = box_lanes(&rays->slabs, instance->lower[0], instance->lower[1], instance->lower[2], instance->upper[0], instance->upper[1], instance->upper[2], (real)(0.0f));
+  return rays->slabs.usable & (inside->near <= inside->far);
+}
+
+// Rays in the space of a shape that is still.
+SUN_INLINE void rays_in_shape(const SUN_GLOBAL Instance *instance, const ShapeRays *rays, vec3 *origin, vec3 *direction) {
+  const vec3 from = rays->origin, along = rays->direction;
+  if (instance->flags & SUN_INSTANCE_ALIGNED) {  // the same numbers: what the zeros of the matrix add is left out
+    const SUN_GLOBAL float *m = instance->to_object;
+    *origin = make_vec3(fma((real)(m[0]), from.x, (real)(m[3])), fma((real)(m[5]), from.y, (real)(m[7])), fma((real)(m[10]), from.z, (real)(m[11])));
+    *direction = make_vec3(m[0] * along.x, m[5] * along.y, m[10] * along.z);
+  } else {
+    *origin = make_vec3(origin_in_instance(instance, 0, from), origin_in_instance(instance, 1, from), origin_in_instance(instance, 2, from));
+    *direction = make_vec3(direction_in_instance(instance, 0, along), direction_in_instance(instance, 1, along), direction_in_instance(instance, 2, along));
+  }
+}
+
+// The nearest hit of a shape that counts, in the lanes of `on`. origin, direction: the rays in its space.
+SUN_INLINE ShapeHit meet_shape(const SUN_GLOBAL Instance *instance, uint primitive, vec3 origin, vec3 direction, ShapeRays *rays, const ShapeSearch *search, mask on) {
+  const uint flags = instance->flags;
+  const int single_sided = (flags & SUN_INSTANCE_SINGLE_SIDED) != 0;
+  ShapeHit hit;
+  hit.t = (real)(0.0f);
+  hit.place = splat3((real)(0.0f));
+  LaneInterval inside;
+  if (flags & SUN_INSTANCE_SPHERE) {
+    real near, far;
+    on = meet_sphere(origin, direction, on, &near, &far);
+    mask first = on & (near > 0.0f) & (near < rays->t_max), second = on & (far > 0.0f) & (far < rays->t_max);  // NaN fails
+    if (single_sided) second = on & !on;  // the farther one is met from within
+    hit.counts = first | second;
+    if (!ANY(hit.counts)) return hit;
+    const mask enters = enter_box(instance, rays, &inside);
+    hit = count_met(primitive, place_along(origin, direction, near), inside, search, near, first & enters);
+    second = second & enters & !hit.counts;
+    if (!ANY(second)) return hit;
+    const ShapeHit later = count_met(primitive, place_along(origin, direction, far), inside, search, far, second);
+    hit.t = later.counts ? later.t : hit.t;
+    hit.place = select3(later.counts, later.place, hit.place);
+    hit.counts = hit.counts | later.counts;
+    return hit;
+  }
+  const real met = -origin.y / direction.y;  // parallel to it: infinite, or NaN within it
+  const vec3 place = place_along(origin, direction, met);
+  hit.counts = on & (met > 0.0f) & (met < rays->t_max);
+  const real x = fabs(place.x), z = fabs(place.z);
+  if (flags & SUN_INSTANCE_DISK) {
+    hit.counts = hit.counts & (x * x + z * z <= 1.0f);
+  } else {
+    const real reach = (real)(flags & SUN_INSTANCE_QUAD ? 1.0f : SUN_PLANE_REACH);
+    hit.counts = hit.counts & (x <= reach) & (z <= reach);
+  }
+  if (single_sided) hit.counts = hit.counts & !(direction.y > 0.0f);
+  if (!ANY(hit.counts)) return hit;
+  mask enters = hit.counts;
+  inside.near = (real)(0.0f);
+  inside.far = (real)(SUN_INFINITY);
+  if (!(flags & SUN_INSTANCE_PLANE)) enters = enters & enter_box(instance, rays, &inside);
+  return count_met(primitive, place, inside, search, met, enters);
+}
+
+// Shapes that opaque rays, or those for what lets light pass, do not look at.
+SUN_INLINE int shape_unwanted(uint flags, uint want) {
+  return (want == SUN_WANT_OPAQUE && (flags & SUN_INSTANCE_PASSABLE)) || (want == SUN_WANT_PASSABLE && !(flags & SUN_INSTANCE_PASSABLE));
+}
+
+// u and v of a hit.
+SUN_INLINE vec2 place_code(mask sphere, vec3 place) {
+  vec2 uv = make_vec2(place.x, place.z);
+  if (ANY(sphere)) {
+    const vec2 folded = encode_octahedron(place);
+    uv.x = sphere ? folded.x : uv.x;
+    uv.y = sphere ? folded.y : uv.y;
+  }
+  return uv;
+}
+
+// One ray: takes the nearest hit of a shape that counts; true if there is one.
 SUN_INLINE int search_shape(const TraceScene *scene, uint number, const Ray *ray, const PreparedRay *world, Search *search) {
   const SUN_GLOBAL Instance *instance = &scene->instances[number];
   const uint flags = instance->flags;
-  if (search->want == SUN_WANT_OPAQUE && (flags & SUN_INSTANCE_PASSABLE)) return 0;
-  if (search->want == SUN_WANT_PASSABLE && !(flags & SUN_INSTANCE_PASSABLE)) return 0;
-  Place place = place_in_world(number, search);
-  if (!(flags & SUN_INSTANCE_PLANE)) {
-    place.world = box_interval(world, instance->lower[0], instance->lower[1], instance->lower[2], instance->upper[0], instance->upper[1], instance->upper[2], 0.0f);
-    if (!(place.world.near <= place.world.far)) return 0;
-  }
-  float linear[9], origin[3], direction[3], ts[2];
-  int behind[2], count = 1;
-  to_space(scene->motion, instance, ray, linear, origin, direction);
-  if (flags & SUN_INSTANCE_SPHERE) {
-    if (!meet_sphere(origin, direction, &ts[0], &ts[1])) return 0;
-    behind[0] = 0;
-    behind[1] = 1;
-    count = 2;
-  } else {
-    ts[0] = -origin[1] / direction[1];  // parallel to it: infinite, or NaN within it
-    behind[0] = direction[1] > 0.0f;
-    ts[1] = ts[0];
-    behind[1] = behind[0];
-  }
+  if (shape_unwanted(flags, search->want)) return 0;
+  const Place place = place_in_world(number, search);
   const uint primitive = scene->roots[number];
-  const uint end_primitive = number < search->best_instance ? SUN_NONE : number == search->best_instance ? search->best_primitive : 0;
-  for (int k = 0; k < count; k++) {
-    const float met = ts[k];
-    if (!(fabs(met) <= SUN_LARGEST) || (behind[k] && (flags & SUN_INSTANCE_SINGLE_SIDED))) continue;
-    const float x = fma(met, direction[0], origin[0]), y = fma(met, direction[1], origin[1]), z = fma(met, direction[2], origin[2]);
-    int within = 1;
-    if (flags & SUN_INSTANCE_DISK) within = x * x + z * z <= 1.0f;
-    if (flags & SUN_INSTANCE_QUAD) within = (fabs(x) <= 1.0f) & (fabs(z) <= 1.0f);
-    if (flags & SUN_INSTANCE_PLANE) within = (fabs(x) <= SUN_PLANE_REACH) & (fabs(z) <= SUN_PLANE_REACH);
-    float t = met < place.world.near ? place.world.near : met;
-    t = t > place.world.far ? place.world.far : t;
-    within = within & ((t > search->passed_t) | ((t == search->passed_t) & (primitive >= place.first_primitive)));
-    within = within & ((t < search->best_t) | ((t == search->best_t) & (primitive < end_primitive)));
-    if (!within) continue;
-    float u = x, v = z;
-    if (flags & SUN_INSTANCE_SPHERE) encode_octahedron(x, y, z, &u, &v);
-    take_hit(search, &place, t, u, v, primitive);
-    return 1;
+  ShapeRays rays;
+  rays.origin = make_vec3((real)(ray->origin[0]), (real)(ray->origin[1]), (real)(ray->origin[2]));
+  rays.direction = make_vec3((real)(ray->direction[0]), (real)(ray->direction[1]), (real)(ray->direction[2]));
+  rays.t_max = (real)(ray->t_max);
+  rays.lower = rays.upper = 0;
+  rays.ready = 1;
+  rays.slabs = slabs_of_ray(world);
+  ShapeSearch wanted;
+  wanted.passed_t = (real)(search->passed_t);
+  wanted.best_t = (real)(search->best_t);
+  wanted.first_primitive = (uint_n)(place.first_primitive);
+  wanted.end_primitive = (uint_n)(number < search->best_instance ? SUN_NONE : number == search->best_instance ? search->best_primitive : 0);
+  const mask on = wanted.passed_t >= 0.0f;  // all: it is never negative
+  vec3 origin, direction;
+  if (SUN_MOTION && (flags & SUN_INSTANCE_MOVING)) {
+    float linear[9], from[3], along[3];
+    to_moving_instance(scene->motion, flags, ray, linear, from, along);
+    origin = make_vec3((real)(from[0]), (real)(from[1]), (real)(from[2]));
+    direction = make_vec3((real)(along[0]), (real)(along[1]), (real)(along[2]));
+  } else {
+    rays_in_shape(instance, &rays, &origin, &direction);
   }
-  return 0;
+  const ShapeHit hit = meet_shape(instance, primitive, origin, direction, &rays, &wanted, on);
+  if (!FIRST_LANE(hit.counts)) return 0;
+  const mask sphere = (uint_n)(flags & SUN_INSTANCE_SPHERE) != (uint_n)(0);
+  const vec2 uv = place_code(sphere, hit.place);
+  take_hit(search, &place, FIRST_LANE(hit.t), FIRST_LANE(uv.x), FIRST_LANE(uv.y), primitive);
+  return 1;
 }
 
 SUN_NAMESPACE_END

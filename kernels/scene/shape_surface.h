@@ -38,27 +38,43 @@ SUN_FN vec3 sample_shape_place(uint_n flags, vec2 u) {
   return select3(is_shape(flags, SUN_INSTANCE_SPHERE), square_to_uniform_sphere(u), flat);
 }
 
-SUN_FN ShapePoint shape_point(const Matrix *to_world, uint_n flags, vec3 place) {
+// What follows from the sum of the columns of to_world, each scaled by its coordinate of the place, and from the normal, not normalised, of the length by
+// which areas grow. `terms`: sums of the sizes of what was added.
+SUN_FN ShapePoint finish_shape_point(uint_n flags, vec3 position, vec3 normal, vec3 terms) {
   ShapePoint point;
+  normal = select3(is_shape(flags, SUN_INSTANCE_MIRRORED), negate3(normal), normal);
+  real scale = sqrt(dot3(normal, normal));
+  point.position = position;
+  point.normal = normalize3(normal);
+  point.area = scale * (is_shape(flags, SUN_INSTANCE_SPHERE) ? (real)(4.0f * SUN_PI) : is_shape(flags, SUN_INSTANCE_DISK) ? (real)(SUN_PI) : (real)(4.0f));
+  point.offset = max_of3(terms) * 3.81469727e-6f;  // 2^-18 of the largest terms that were added, as of a triangle's coordinates (surface_offset)
+  point.uv[0] = point.uv[1] = (real)(0.0f);
+  return point;
+}
+
+SUN_FN ShapePoint shape_point(const Matrix *to_world, uint_n flags, vec3 place) {
   const real *m = to_world->m;
-  mask sphere = is_shape(flags, SUN_INSTANCE_SPHERE);
   vec3 x = make_vec3(m[0], m[4], m[8]), y = make_vec3(m[1], m[5], m[9]), z = make_vec3(m[2], m[6], m[10]);
   // By the cofactors: areas across the normal grow by the length of what this makes of it.
   vec3 up = cross3(z, x);
   vec3 round = add3(add3(scale3(cross3(y, z), place.x), scale3(up, place.y)), scale3(cross3(x, y), place.z));
-  vec3 normal = select3(sphere, round, up);
-  normal = select3(is_shape(flags, SUN_INSTANCE_MIRRORED), negate3(normal), normal);
-  real scale = sqrt(dot3(normal, normal));
-  point.normal = normalize3(normal);
-  point.area = scale * (sphere ? (real)(4.0f * SUN_PI) : is_shape(flags, SUN_INSTANCE_DISK) ? (real)(SUN_PI) : (real)(4.0f));
+  vec3 normal = select3(is_shape(flags, SUN_INSTANCE_SPHERE), round, up);
   vec3 across = scale3(x, place.x), along = scale3(y, place.y), down = scale3(z, place.z);
   vec3 origin = make_vec3(m[3], m[7], m[11]);
-  point.position = add3(add3(add3(across, along), down), origin);
-  // 2^-18 of the largest terms that were added, as of a triangle's coordinates (surface_offset).
   vec3 terms = make_vec3(fabs(across.x) + fabs(along.x) + fabs(down.x) + fabs(origin.x), fabs(across.y) + fabs(along.y) + fabs(down.y) + fabs(origin.y),
                          fabs(across.z) + fabs(along.z) + fabs(down.z) + fabs(origin.z));
-  point.offset = max_of3(terms) * 3.81469727e-6f;
-  return point;
+  return finish_shape_point(flags, add3(add3(add3(across, along), down), origin), normal, terms);
+}
+
+// The same numbers for one shape with SUN_INSTANCE_ALIGNED: what its zeros add is left out.
+SUN_FN ShapePoint aligned_shape_point(const SUN_GLOBAL float *to_world, uint flags, vec3 place) {
+  const float x = to_world[0], y = to_world[5], z = to_world[10];
+  vec3 origin = make_vec3((real)(to_world[3]), (real)(to_world[7]), (real)(to_world[11]));
+  vec3 normal = make_vec3((real)(0.0f), (real)(z * x), (real)(0.0f));
+  if (flags & SUN_INSTANCE_SPHERE) normal = make_vec3((y * z) * place.x, normal.y * place.y, (x * y) * place.z);
+  vec3 part = make_vec3(x * place.x, y * place.y, z * place.z);
+  vec3 terms = make_vec3(fabs(part.x) + fabs(origin.x), fabs(part.y) + fabs(origin.y), fabs(part.z) + fabs(origin.z));
+  return finish_shape_point((uint_n)(flags), add3(part, origin), normal, terms);
 }
 
 // A sphere's are those of environments; a disk's and a quad's run over the square around it, from the corner at -x, -z; a plane's are x and z.

@@ -57,7 +57,7 @@ SUN_FN Matrix instance_to_world(const Scene *scene, uint_n instance, uint_n flag
   Matrix matrix;
   for (int row = 0; row < 3; row++) {
     Quad quad;
-    GATHER_QUAD(quad, scene->instances, instance, to_world[4 * row]);
+    SCENE_QUAD(quad, scene, instances, instance, to_world[4 * row]);
     matrix_row(&matrix, row, quad);
   }
   mask moving = (flags & (uint_n)(SUN_INSTANCE_MOVING)) != (uint_n)(0);
@@ -94,7 +94,7 @@ SUN_FN Matrix instance_to_object(const Scene *scene, uint_n instance, uint_n fla
   Matrix matrix;
   for (int row = 0; row < 3; row++) {
     Quad quad;
-    GATHER_QUAD(quad, scene->instances, instance, to_object[4 * row]);
+    SCENE_QUAD(quad, scene, instances, instance, to_object[4 * row]);
     matrix_row(&matrix, row, quad);
   }
   mask moving = (flags & (uint_n)(SUN_INSTANCE_MOVING)) != (uint_n)(0);
@@ -125,26 +125,29 @@ SUN_FN vec3 transform_normal(const Matrix *to_object, vec3 n) {
 }
 
 // What a shape's point has in place of a triangle's; after load_corners, whose corners are all one for shapes.
-SUN_FN ShapePoint point_of_shape(const Scene *scene, uint_n instance, uint_n flags, vec3 place) {
-  Matrix matrix = instance_to_world(scene, instance, flags);
-  ShapePoint point = shape_point(&matrix, flags, place);
-#if SUN_TEXTURES
-  shape_coordinates(&point, flags, place);
-#else
-  point.uv[0] = point.uv[1] = (real)(0.0f);
-#endif
+SUN_FN ShapePoint point_of_shape(const Scene *scene, uint_n instance, uint_n flags, vec3 place, mask textured) {
+  ShapePoint point;
+  if (LANES_ALIKE(scene) && (FIRST_LANE(flags) & SUN_INSTANCE_ALIGNED)) {
+    point = aligned_shape_point(scene->instances[FIRST_LANE(instance)].to_world, FIRST_LANE(flags), place);
+  } else {
+    Matrix matrix = instance_to_world(scene, instance, flags);
+    point = shape_point(&matrix, flags, place);
+  }
+  if (SUN_TEXTURES && ANY(textured)) shape_coordinates(&point, flags, place);
   return point;
 }
+
+SUN_FN mask is_textured(uint_n material_flags) { return (material_flags & (uint_n)(SUN_MATERIAL_TEXTURED)) != (uint_n)(0); }
 
 SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitive) {
   Corners c;
   Quad triangle;
-  GATHER_QUAD(triangle, scene->triangles, primitive, vertex[0]);
+  SCENE_QUAD(triangle, scene, triangles, primitive, vertex[0]);
   c.vertex[0] = triangle.x;
   c.vertex[1] = triangle.y;
   c.vertex[2] = triangle.z;
   c.material = triangle.w;
-  GATHER_UINT(c.flags, scene->instances, instance, flags);
+  SCENE_UINT(c.flags, scene, instances, instance, flags);
   c.moved = (c.flags & (uint_n)(SUN_INSTANCE_IDENTITY)) == (uint_n)(0);
 #if SUN_DEFORMING
   c.deforms = (c.flags & (uint_n)(SUN_INSTANCE_DEFORMING)) != (uint_n)(0);
@@ -152,9 +155,10 @@ SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitiv
   if (ANY(c.deforms)) c.next = c.deforms ? (uint_n)(scene->motion->deforming) : (uint_n)(0);
   for (int k = 0; k < 3; k++) c.vertex[k] = c.vertex[k] + c.next * scene->moment.step;
 #endif
+#if SUN_TRIANGLES
   for (int k = 0; k < 3; k++) {
     Quad vertex;
-    GATHER_QUAD(vertex, scene->vertices, c.vertex[k], position[0]);
+    SCENE_QUAD(vertex, scene, vertices, c.vertex[k], position[0]);
     c.p[k] = make_vec3(real_of_bits(vertex.x), real_of_bits(vertex.y), real_of_bits(vertex.z));
     c.u[k] = real_of_bits(vertex.w);
 #if SUN_DEFORMING
@@ -174,6 +178,12 @@ SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitiv
       c.flags = moving ? plain | (matrix_mirrors(&matrix) ? (uint_n)(SUN_INSTANCE_MIRRORED) : (uint_n)(0)) : c.flags;
     }
   }
+#else
+  for (int k = 0; k < 3; k++) {
+    c.p[k] = splat3((real)(0.0f));
+    c.u[k] = (real)(0.0f);
+  }
+#endif
   return c;
 }
 
@@ -189,7 +199,7 @@ SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitiv
     }                                                                                           \
   } while (0)
 #else
-#define GATHER_CORNER(out, scene, c, k, records, field) GATHER_VEC3(out, (scene)->records, (c)->vertex[k], field)
+#define GATHER_CORNER(out, scene, c, k, records, field) SCENE_VEC3(out, scene, records, (c)->vertex[k], field)
 #endif
 
 // Out of the front: counter-clockwise in mesh space. Not normalised: its length is twice the area.
@@ -237,15 +247,15 @@ typedef struct Surface {
 SUN_FN void surface_coordinates(const Scene *scene, Surface *s, const Corners *c, real u, real v) {
   real corner[3];
   s->uv0[0] = interpolate(c->u[0], c->u[1], c->u[2], u, v);
-  for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->vertices, c->vertex[k], v);
+  for (int k = 0; k < 3; k++) SCENE_FLOAT(corner[k], scene, vertices, c->vertex[k], v);
   s->uv0[1] = interpolate(corner[0], corner[1], corner[2], u, v);
   if (scene->frame->flags & SUN_FRAME_EXTRAS) {
     for (int i = 0; i < 2; i++) {
-      for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->extras, c->vertex[k], uv1[i]);
+      for (int k = 0; k < 3; k++) SCENE_FLOAT(corner[k], scene, extras, c->vertex[k], uv1[i]);
       s->uv1[i] = interpolate(corner[0], corner[1], corner[2], u, v);
     }
     for (int i = 0; i < 4; i++) {
-      for (int k = 0; k < 3; k++) GATHER_FLOAT(corner[k], scene->extras, c->vertex[k], color[i]);
+      for (int k = 0; k < 3; k++) SCENE_FLOAT(corner[k], scene, extras, c->vertex[k], color[i]);
       s->color[i] = interpolate(corner[0], corner[1], corner[2], u, v);
     }
   }
@@ -272,18 +282,25 @@ SUN_FN vec3 bend_normal(vec3 ns, vec3 wo, vec3 geometric) {
 SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   Surface s;
   Corners c = load_corners(scene, hit->instance, hit->primitive);
+  s.material = c.material;
+  SCENE_UINT(s.material_flags, scene, materials, c.material, flags);
+#if SUN_TRIANGLES
   s.position = interpolate3(c.p[0], c.p[1], c.p[2], hit->u, hit->v);
   vec3 n = corners_normal(&c);
   real twice_area = sqrt(dot3(n, n));
   s.area = 0.5f * twice_area;
   vec3 front_normal = normalize3(n);
   s.offset = surface_offset(&c);
+#else
+  vec3 front_normal = s.position = splat3((real)(0.0f));
+  s.area = s.offset = (real)(0.0f);
+#endif
 #if SUN_SHAPES
   mask shape = hit->hit & is_shape(c.flags, SUN_INSTANCE_SHAPE);
   real shape_uv[2];
   shape_uv[0] = shape_uv[1] = (real)(0.0f);
   if (ANY(shape)) {
-    ShapePoint point = point_of_shape(scene, hit->instance, c.flags, shape_place(c.flags, hit->u, hit->v));
+    ShapePoint point = point_of_shape(scene, hit->instance, c.flags, shape_place(c.flags, hit->u, hit->v), shape & is_textured(s.material_flags));
     s.position = select3(shape, point.position, s.position);
     front_normal = select3(shape, point.normal, front_normal);
     s.area = shape ? point.area : s.area;
@@ -295,9 +312,8 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   s.cos_front = dot3(front_normal, wo);
   s.front = s.cos_front > 0.0f;
   s.normal = select3(s.front, front_normal, negate3(front_normal));
-  s.material = c.material;
-  GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
 
+#if SUN_TRIANGLES
   vec3 vertex_normal[3];
   for (int k = 0; k < 3; k++) GATHER_CORNER(vertex_normal[k], scene, &c, k, vertices, normal[0]);
   vec3 ns = interpolate3(vertex_normal[0], vertex_normal[1], vertex_normal[2], hit->u, hit->v);
@@ -309,6 +325,9 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   ns = select3(length2 > 1e-30f, normalize3(ns), front_normal);
   // A shading normal belongs to the front; one that points behind it (bad input) gives way to the geometric one.
   ns = select3(dot3(ns, front_normal) > 0.0f, ns, front_normal);
+#else
+  vec3 ns = front_normal;
+#endif
 #if SUN_SHAPES
   ns = select3(shape, front_normal, ns);
 #endif
@@ -316,9 +335,10 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
 
   for (int i = 0; i < 2; i++) s.uv0[i] = s.uv1[i] = (real)(0.0f);
   for (int i = 0; i < 4; i++) s.color[i] = (real)(1.0f);
-  s.shading = frame_of_normal(ns);
 #if SUN_TEXTURES
+#if SUN_TRIANGLES
   surface_coordinates(scene, &s, &c, hit->u, hit->v);
+#endif
 #if SUN_SHAPES
   for (int i = 0; i < 2; i++) {
     s.uv0[i] = shape ? shape_uv[i] : s.uv0[i];
@@ -326,16 +346,17 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   }
   for (int i = 0; i < 4; i++) s.color[i] = shape ? (real)(1.0f) : s.color[i];
 #endif
+#if SUN_TRIANGLES
   if (scene->frame->flags & SUN_FRAME_EXTRAS) {
     // The tangent frame of the normal map: interpolated, not made orthogonal again, as the map was baked [Mikkelsen08].
     uint_n normal_slot;
-    GATHER_UINT(normal_slot, scene->materials, c.material, slot[SUN_SLOT_NORMAL]);
+    SCENE_UINT(normal_slot, scene, materials, c.material, slot[SUN_SLOT_NORMAL]);
     mask mapped = hit->hit & (normal_slot != (uint_n)(SUN_NONE));
     if (ANY(mapped)) {
       vec3 corner_tangent[3];
       real handed;
       for (int k = 0; k < 3; k++) GATHER_CORNER(corner_tangent[k], scene, &c, k, extras, tangent[0]);
-      GATHER_FLOAT(handed, scene->extras, c.vertex[0], tangent[3]);
+      SCENE_FLOAT(handed, scene, extras, c.vertex[0], tangent[3]);
       vec3 tangent = interpolate3(corner_tangent[0], corner_tangent[1], corner_tangent[2], hit->u, hit->v);
       if (ANY(c.moved)) {
         Matrix to_world = instance_to_world(scene, hit->instance, c.flags);
@@ -349,7 +370,7 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
       vec3 bitangent = scale3(cross3(front_ns, tangent), handed);
       Texel4 texel = sample_slot(&scene->pages, scene->textures, scene->texture_refs, scene->tables, normal_slot, s.uv0, s.uv1, mapped);
       real scale;
-      GATHER_FLOAT(scale, scene->materials, c.material, normal_scale);
+      SCENE_FLOAT(scale, scene, materials, c.material, normal_scale);
       vec3 m = make_vec3((2.0f * texel.r - 1.0f) * scale, (2.0f * texel.g - 1.0f) * scale, 2.0f * texel.b - 1.0f);
       vec3 bumped = add3(add3(scale3(tangent, m.x), scale3(bitangent, m.y)), scale3(front_ns, m.z));
       mapped = mapped & (dot3(bumped, bumped) > 1e-12f);
@@ -358,6 +379,7 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
       ns = select3(mapped, bumped, ns);
     }
   }
+#endif
 #endif
   s.unbent = ns;
   s.shading = frame_of_normal(bend_normal(ns, wo, s.normal));
@@ -373,7 +395,7 @@ SUN_FN vec3 surface_origin(const Surface *s, vec3 direction) {
 #if SUN_TEXTURES
 SUN_FN Texel4 material_texel(const Scene *scene, const Surface *s, uint slot, mask wanted) {
   uint_n ref;
-  GATHER_UINT(ref, scene->materials, s->material, slot[slot]);
+  SCENE_UINT(ref, scene, materials, s->material, slot[slot]);
   return sample_slot(&scene->pages, scene->textures, scene->texture_refs, scene->tables, ref, s->uv0, s->uv1, wanted);
 }
 #endif
@@ -385,8 +407,8 @@ SUN_FN real surface_alpha(const Scene *scene, const Surface *s, mask wanted) {
   real alpha = (real)(1.0f);
   if (ANY(uses)) {
     real value, cutoff;
-    GATHER_FLOAT(value, scene->materials, s->material, base_color[3]);
-    GATHER_FLOAT(cutoff, scene->materials, s->material, alpha_cutoff);
+    SCENE_FLOAT(value, scene, materials, s->material, base_color[3]);
+    SCENE_FLOAT(cutoff, scene, materials, s->material, alpha_cutoff);
     value = value * s->color[3];
 #if SUN_TEXTURES
     value = value * material_texel(scene, s, SUN_SLOT_BASE_COLOR, uses).a * material_texel(scene, s, SUN_SLOT_ALPHA, uses).r;
@@ -404,7 +426,7 @@ SUN_FN vec3 surface_emission(const Scene *scene, const Surface *s, mask wanted) 
                (s->front | ((s->material_flags & (uint_n)(SUN_MATERIAL_DOUBLE_SIDED)) != (uint_n)(0)));
   if (ANY(emits)) {
     vec3 value;
-    GATHER_VEC3(value, scene->materials, s->material, emission[0]);
+    SCENE_VEC3(value, scene, materials, s->material, emission[0]);
 #if SUN_TEXTURES
     Texel4 texel = material_texel(scene, s, SUN_SLOT_EMISSION, emits);
     value = mul3(value, make_vec3(texel.r, texel.g, texel.b));
@@ -420,9 +442,9 @@ SUN_FN vec3 surface_emission(const Scene *scene, const Surface *s, mask wanted) 
 // The bsdf's parameters, textures looked up.
 SUN_FN Bsdf surface_bsdf(const Scene *scene, const Surface *s, mask wanted) {
   Bsdf b;
-  GATHER_VEC3(b.base, scene->materials, s->material, base_color[0]);
+  SCENE_VEC3(b.base, scene, materials, s->material, base_color[0]);
 #if SUN_TEXTURES
-  mask textured = wanted & ((s->material_flags & (uint_n)(SUN_MATERIAL_TEXTURED)) != (uint_n)(0));
+  mask textured = wanted & is_textured(s->material_flags);
   b.base = mul3(b.base, make_vec3(s->color[0], s->color[1], s->color[2]));
   if (ANY(textured)) {
     Texel4 texel = material_texel(scene, s, SUN_SLOT_BASE_COLOR, textured);
@@ -439,12 +461,12 @@ SUN_FN Bsdf surface_bsdf(const Scene *scene, const Surface *s, mask wanted) {
 #if SUN_SPECULAR
   if (ANY(b.specular)) {
     Quad quad;
-    GATHER_QUAD(quad, scene->materials, s->material, metallic);
+    SCENE_QUAD(quad, scene, materials, s->material, metallic);
     b.metallic = real_of_bits(quad.x);
     real roughness = real_of_bits(quad.y);
     b.transmission = real_of_bits(quad.z);
     real ior = real_of_bits(quad.w);
-    GATHER_QUAD(quad, scene->materials, s->material, f0[0]);
+    SCENE_QUAD(quad, scene, materials, s->material, f0[0]);
     b.f0 = make_vec3(real_of_bits(quad.x), real_of_bits(quad.y), real_of_bits(quad.z));
     b.f90 = real_of_bits(quad.w);
 #if SUN_TEXTURES
@@ -471,8 +493,11 @@ SUN_FN vec3 solid_transmittance(const Scene *scene, uint_n material, real distan
   vec3 left = splat3((real)(1.0f));
   if (ANY(within)) {
     vec3 a;
-    uint_n known = within ? material : (uint_n)(0);  // lanes that are not within one need not name any
-    GATHER_VEC3(a, scene->materials, known, absorption[0]);
+    uint_n known = material;
+    if (!LANES_ALIKE(scene)) known = within ? material : (uint_n)(0);  // lanes that are not within one need not name any
+    SCENE_VEC3(a, scene, materials, known, absorption[0]);
+    within = within & (max_of3(a) > 0.0f);
+    if (!ANY(within)) return left;
     vec3 passed = make_vec3(exp_real(-a.x * distance), exp_real(-a.y * distance), exp_real(-a.z * distance));
     left = select3(within, passed, left);
   }

@@ -65,7 +65,7 @@ SUN_INLINE int prepare_world_ray(PreparedRay *world, const TraceScene *scene, co
   } else {
     top_bounds(scene, lower, upper);
   }
-  for (int axis = 0; axis < 3; axis++) reach[axis] = farther(lower[axis], upper[axis], ray->origin[axis]);
+  for (int axis = 0; axis < 3; axis++) reach[axis] = FIRST_LANE(farther(lower[axis], upper[axis], (real)(ray->origin[axis])));
   return prepare_ray(world, ray->origin, ray->direction, reach);
 }
 
@@ -84,7 +84,7 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
   place->from = search->passed_t > place->world.near ? search->passed_t : 0.0f;
   if (!(place->world.near <= place->world.far)) return 0;
   float origin[3], direction[3], linear[9], reach[3], world_reach[3];
-  for (int axis = 0; axis < 3; axis++) world_reach[axis] = farther(instance->lower[axis], instance->upper[axis], ray->origin[axis]);
+  for (int axis = 0; axis < 3; axis++) world_reach[axis] = FIRST_LANE(farther(instance->lower[axis], instance->upper[axis], (real)(ray->origin[axis])));
 #if SUN_DEFORMING
   if (instance->flags & SUN_INSTANCE_DEFORMING) {
     place->keys = scene->motion->steps + 1u;
@@ -100,15 +100,16 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
   return prepare_ray(inside, origin, direction, reach);
 }
 
-// Searches instance after instance, nearest first: only the first where there is one alone. True where `any` and something counted.
-SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *search, int any_one) {
+// Searches instance after instance, nearest first: only the first where there is one alone. True where `any` and something counted. `shapes`: 0 leaves them
+// out.
+SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *search, int any_one, int shapes) {
   if (scene->instance_count == 0) return 0;
   const int alone = scene->instance_count == 1, direct = alone && (scene->instances[0].flags & SUN_INSTANCE_IDENTITY);
   PreparedRay inside;  // where one instance is the world, made where it is read: reading a copy of what was just written waits for that
   if (!prepare_world_ray(&inside, scene, ray)) return 0;
   const PreparedRay world = inside;
   Place place = place_in_world(0, search);
-  if (SUN_SHAPES)
+  if (SUN_SHAPES && shapes)
     for (uint plane = scene->instance_count; plane < scene->instance_count + scene->plane_count; plane++)
       if (search_shape(scene, plane, ray, &world, search) && any_one) return 1;
   ulong stack[SUN_TRACE_STACK];
@@ -116,7 +117,7 @@ SUN_INLINE int search_scene(const TraceScene *scene, const Ray *ray, Search *sea
   uint number = alone ? 0 : next_instance(scene, &world, search->passed_t, search->best_t, stack, &walk);
   while (number != SUN_NONE) {
     if (SUN_SHAPES && (scene->instances[number].flags & SUN_INSTANCE_SHAPE)) {
-      if (search_shape(scene, number, ray, &world, search) && any_one) return 1;
+      if (shapes && search_shape(scene, number, ray, &world, search) && any_one) return 1;
     } else if (direct || enter_instance(scene, number, ray, &world, search, &inside, &place)) {
       if (search_mesh(scene, scene->roots[number], &inside, &place, search, any_one)) return 1;
     }
@@ -146,13 +147,13 @@ SUN_INLINE Hit hit_of_search(const TraceScene *scene, const Search *search) {
 // The nearest hit: the smallest (t, instance, primitive). Its instance is SUN_NONE, and its t the ray's t_max, where there is none.
 SUN_INLINE Hit closest_hit(const TraceScene *scene, Ray ray, uint want) {
   Search search = begin_search(&ray, want);
-  search_scene(scene, &ray, &search, 0);
+  search_scene(scene, &ray, &search, 0, 1);
   return hit_of_search(scene, &search);
 }
 
 SUN_INLINE int any_hit(const TraceScene *scene, Ray ray, uint want) {
   Search search = begin_search(&ray, want);
-  return search_scene(scene, &ray, &search, 1);
+  return search_scene(scene, &ray, &search, 1, 1);
 }
 
 SUN_NAMESPACE_END

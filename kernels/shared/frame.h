@@ -97,7 +97,8 @@ typedef struct Frame {
   float ambient[3];              // radiance that is about in all places, for what scatters it diffusely
   uint motion_steps;             // keys less one while the shutter is open; 0: all is still
   uint light_paths;              // of a light pass of photons
-  uint pad[3];
+  uint first_shape;              // instances from there on are shapes, those with bounds before the planes
+  float lower[3], upper[3];      // bounds of all instances that trees know
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 

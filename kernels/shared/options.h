@@ -41,6 +41,14 @@
 #define SUN_MOTION 2
 #endif
 #define SUN_DEFORMING (SUN_MOTION > 1)
+// 1 where it has few of them: a kernel that has LANES rays to trace asks each shape for all of them, and the tree for triangles alone; 1 where the scene has
+// such triangles at all.
+#ifndef SUN_FEW_SHAPES
+#define SUN_FEW_SHAPES 0
+#endif
+#ifndef SUN_TRIANGLES
+#define SUN_TRIANGLES 1
+#endif
 
 // 1 where the scene has anything but diffuse surfaces; 1 where it has textures, or colours of vertices. 0 leaves the code out: compiled sooner, the same bits.
 #ifndef SUN_SPECULAR

@@ -12,7 +12,7 @@
 #include "path/path.h"
 #include "path/number.h"
 #include "scene/camera.h"
-#include "scene/traverse.h"
+#include "scene/trace_lanes.h"
 #include "transport/direct.h"
 #include "transport/layers.h"
 #include "transport/pass.h"
@@ -31,113 +31,79 @@ SUN_FN Branch select_branch(mask m, const Branch *a, const Branch *b) {
   c.direction = select3(m, a->direction, b->direction);
   c.throughput = select3(m, a->throughput, b->throughput);
   c.depth = m ? a->depth : b->depth;
-  c.passed_t = m ? a->passed_t : b->passed_t;
-  c.passed_instance = m ? a->passed_instance : b->passed_instance;
-  c.passed_primitive = m ? a->passed_primitive : b->passed_primitive;
+  c.passed_t = b->passed_t;
+  c.passed_instance = b->passed_instance;
+  c.passed_primitive = b->passed_primitive;
+  if (SUN_PASSABLE) {
+    c.passed_t = m ? a->passed_t : b->passed_t;
+    c.passed_instance = m ? a->passed_instance : b->passed_instance;
+    c.passed_primitive = m ? a->passed_primitive : b->passed_primitive;
+  }
   return c;
 }
 
-// LANES rays, a lane at a time over the tree.
-typedef struct RayLanes {
-  float origin[3][LANES], direction[3][LANES], t_max[LANES], passed_t[LANES], time[LANES];
-  uint passed_instance[LANES], passed_primitive[LANES];
-  int on[LANES];
-} RayLanes;
-
-SUN_INLINE Ray lane_ray(const RayLanes *rays, int lane) {
-  Ray ray;
-  for (int axis = 0; axis < 3; axis++) {
-    ray.origin[axis] = rays->origin[axis][lane];
-    ray.direction[axis] = rays->direction[axis][lane];
-  }
-  ray.t_max = rays->t_max[lane];
-  ray.passed_t = rays->passed_t[lane];
-  ray.passed_instance = rays->passed_instance[lane];
-  ray.passed_primitive = rays->passed_primitive[lane];
-  ray.time = SUN_MOTION ? rays->time[lane] : 0.0f;
-  return ray;
-}
-
-SUN_INLINE void store_rays(RayLanes *rays, vec3 origin, vec3 direction, real t_max, real passed_t, uint_n passed_instance, uint_n passed_primitive, real time, mask on) {
-  int_n flags = on ? (int_n)(1) : (int_n)(0);
-  LANES_STORE(origin.x, rays->origin[0]);
-  LANES_STORE(origin.y, rays->origin[1]);
-  LANES_STORE(origin.z, rays->origin[2]);
-  LANES_STORE(direction.x, rays->direction[0]);
-  LANES_STORE(direction.y, rays->direction[1]);
-  LANES_STORE(direction.z, rays->direction[2]);
-  LANES_STORE(t_max, rays->t_max);
-  LANES_STORE(passed_t, rays->passed_t);
-  LANES_STORE(passed_instance, rays->passed_instance);
-  LANES_STORE(passed_primitive, rays->passed_primitive);
-  if (SUN_MOTION) LANES_STORE(time, rays->time);
-  LANES_STORE(flags, rays->on);
-}
-
-SUN_BODY void closest_lanes(const TraceScene *tree, const RayLanes *rays, uint want, HitLanes *out) {
-  float t[LANES], u[LANES], v[LANES];
-  uint instance[LANES], primitive[LANES];
-  for (int lane = 0; lane < LANES; lane++) {
-    t[lane] = u[lane] = v[lane] = 0.0f;
-    instance[lane] = primitive[lane] = SUN_NONE;
-    if (!rays->on[lane]) continue;
-    const Hit hit = closest_hit(tree, lane_ray(rays, lane), want);
-    t[lane] = hit.t;
-    u[lane] = hit.u;
-    v[lane] = hit.v;
-    instance[lane] = hit.instance;
-    primitive[lane] = hit.primitive;
-  }
-  out->t = LANES_LOAD(t);
-  out->u = LANES_LOAD(u);
-  out->v = LANES_LOAD(v);
-  out->instance = LANES_LOAD(instance);
-  out->primitive = LANES_LOAD(primitive);
-  out->hit = out->instance != (uint_n)(SUN_NONE);
-  out->instance = out->hit ? out->instance : (uint_n)(0);
-  out->primitive = out->hit ? out->primitive : (uint_n)(0);
-}
-
-SUN_BODY mask blocked_lanes(const TraceScene *tree, const RayLanes *rays) {
-  int blocked[LANES];
-  for (int lane = 0; lane < LANES; lane++) blocked[lane] = rays->on[lane] && any_hit(tree, lane_ray(rays, lane), SUN_WANT_OPAQUE);
-  int_n some = LANES_LOAD(blocked);
-  return some != (int_n)(0);
+SUN_FN uint count_lanes(mask on) {
+  int flags[LANES];
+  int_n ones = on ? (int_n)(1) : (int_n)(0);
+  LANES_STORE(ones, flags);
+  uint count = 0;
+  for (int lane = 0; lane < LANES; lane++) count += (uint)flags[lane];
+  return count;
 }
 
 // What of a light's contribution arrives: 0 where something blocks; through what lets light pass, nearest first.
 SUN_FN vec3 arriving(const Scene *scene, const TraceScene *tree, const DirectSample *direct) {
-  RayLanes rays;
-  uint_n none = (uint_n)(SUN_NONE);
-  store_rays(&rays, direct->origin, direct->direction, direct->t_max, (real)(0.0f), none, none, scene->moment.time, direct->valid);
-  mask open = direct->valid & !blocked_lanes(tree, &rays);
+  Scene of_any = *scene;
+  of_any.alike = 0;
+  Rays rays = fresh_rays(direct->origin, direct->direction, direct->t_max, scene->moment.time);
+  mask open = direct->valid & !blocked_lanes(scene->frame, tree, &rays, direct->valid, SUN_WANT_OPAQUE);
   vec3 worth = select3(open, direct->contribution, splat3((real)(0.0f)));
   vec3 wo = normalize3(negate3(direct->direction));
-  real passed_t = (real)(0.0f);
-  uint_n passed_instance = none, passed_primitive = none;
   while (SUN_PASSABLE && ANY(open)) {
-    store_rays(&rays, direct->origin, direct->direction, direct->t_max, passed_t, passed_instance, passed_primitive, scene->moment.time, open);
-    HitLanes hit;
-    closest_lanes(tree, &rays, SUN_WANT_PASSABLE, &hit);
+    HitLanes hit = closest_lanes(scene->frame, tree, &rays, open, SUN_WANT_PASSABLE);
     open = open & hit.hit;
     if (!ANY(open)) break;
-    worth = select3(open, mul3(worth, passed_share(scene, &hit, wo)), worth);
+    worth = select3(open, mul3(worth, passed_share(&of_any, &hit, wo)), worth);
     open = open & (max_of3(worth) > 0.0f);
-    passed_t = hit.t;
-    passed_instance = hit.instance;
-    passed_primitive = hit.primitive;
+    rays.passed_t = hit.t;
+    rays.passed_instance = hit.instance;
+    rays.passed_primitive = hit.primitive;
   }
   return worth;
 }
 
+// Lanes that are shaded at once: those that hit one shape, whose records are read once, or all that hit triangles. Takes them out of `left`.
+SUN_FN HitLanes take_group(const SUN_GLOBAL Frame *frame, const TraceScene *tree, const HitLanes *hit, mask *left, int *alike) {
+  HitLanes group = *hit;
+  group.hit = *left;
+  *alike = 0;
+  if (SUN_FEW_SHAPES) {
+    const uint number = least_lane(*left ? hit->instance : (uint_n)(SUN_NONE));
+    *alike = number >= frame->first_shape;
+    const mask same = *alike ? hit->instance == (uint_n)(number) : hit->instance < (uint_n)(frame->first_shape);
+    group.hit = *left & same;
+    if (*alike) {
+      group.instance = (uint_n)(number);
+      group.primitive = (uint_n)(tree->roots[number]);
+    }
+  }
+  *left = *left & !group.hit;
+  return group;
+}
+
 // What LANES samples see. `film` may be 0: then what they see is the result alone.
-SUN_BODY vec3 walk_trees(const Scene *scene, const TraceScene *tree, const FilmView *film, const PathNumber *place, const SamplerKey *sample_key,
-                         const CameraRay *camera_of, mask active, uint *rays_traced) {
+SUN_INLINE vec3 walk_trees(const Scene *opened, const TraceScene *tree, const FilmView *film, const PathNumber *place, const SamplerKey *sample_key,
+                           const CameraRay *camera_of, mask active, uint *rays_traced) {
+  Scene of_group = *opened;
+  const Scene *scene = &of_group;
   const SUN_GLOBAL Frame *frame = scene->frame;
   const vec3 black = splat3((real)(0.0f));
-  const uint_n none = (uint_n)(SUN_NONE);
+  const uint_n none = (uint_n)(SUN_NONE), one = (uint_n)(1);
+  const mask nowhere = active & !active;
   const SamplerKey key = *sample_key;
   const CameraRay camera = *camera_of;
+  const real cutoff = (real)(frame->cutoff);
+  const vec3 ambient = make_vec3((real)(frame->ambient[0]), (real)(frame->ambient[1]), (real)(frame->ambient[2]));
   Path path;
   path.pixel = place->y * (uint_n)(frame->tile_width) + place->x;
   path.sample = place->sample;
@@ -153,16 +119,17 @@ SUN_BODY vec3 walk_trees(const Scene *scene, const TraceScene *tree, const FilmV
   // Lanes wait at levels of their own; level k of all lanes stands in waiting[k].
   Branch waiting[SUN_WHITTED_DEPTH];
   uint_n level = (uint_n)(0), deepest = (uint_n)(0);
-  mask limited = active & !active, escaped = limited, layered = limited;
+  mask limited = nowhere, escaped = nowhere, layered = nowhere;
   uint top = 0;  // no lane waits at this level or above
   while (ANY(active)) {
-    RayLanes rays;
-    HitLanes hit;
-    store_rays(&rays, now.origin, now.direction, (real)(SUN_INFINITY), now.passed_t, now.passed_instance, now.passed_primitive, scene->moment.time, active);
-    closest_lanes(tree, &rays, SUN_WANT_ALL, &hit);
-    hit.hit = active & hit.hit;
-    if (film)
-      for (int lane = 0; lane < LANES; lane++) rays_traced[0] += rays.on[lane] != 0;
+    Rays rays = fresh_rays(now.origin, now.direction, (real)(SUN_INFINITY), scene->moment.time);
+    if (SUN_PASSABLE) {
+      rays.passed_t = now.passed_t;
+      rays.passed_instance = now.passed_instance;
+      rays.passed_primitive = now.passed_primitive;
+    }
+    HitLanes hit = closest_lanes(frame, tree, &rays, active, SUN_WANT_ALL);
+    if (film) rays_traced[0] += count_lanes(active);
     vec3 radiance = black;  // that reaches the ray's origin
     mask missed = active & !hit.hit;
     if (ANY(missed)) {
@@ -170,90 +137,100 @@ SUN_BODY vec3 walk_trees(const Scene *scene, const TraceScene *tree, const FilmV
       radiance = select3(shown, environment_radiance(&frame->environment, scene->environment_texels, now.direction), radiance);
       escaped = escaped | (missed & (now.depth == (uint_n)(0)));
     }
-    mask through = active & !active, mirrored = through, straight = through;
+    // Lanes that go on: into a solid, mirrored, straight. Where they go is in `onward` and in `mirror`.
+    mask through = nowhere, mirrored = nowhere, straight = nowhere;
     Branch onward = now, mirror = now;
-    if (ANY(hit.hit)) {
-      vec3 wo = negate3(now.direction);
-      if (film && layers_wanted(frame)) {
-        HitLanes first = hit;
-        first.hit = hit.hit & (now.depth == (uint_n)(0)) & !layered;
-        if (ANY(first.hit)) layered = layered | first_hit_layers(scene, film, &path, &first, wo, camera.weight);
+    vec3 wo = negate3(now.direction);
+    if (film && layers_wanted(frame)) {
+      HitLanes first = hit;
+      first.hit = hit.hit & (now.depth == (uint_n)(0)) & !layered;
+      if (ANY(first.hit)) layered = layered | first_hit_layers(opened, film, &path, &first, wo, camera.weight);
+    }
+    for (mask left = hit.hit; ANY(left);) {
+      HitLanes group = take_group(frame, tree, &hit, &left, &of_group.alike);
+      Surface surface = make_surface(scene, &group, wo);
+      mask present = group.hit;
+      if (SUN_PASSABLE) {
+        real alpha = surface_alpha(scene, &surface, group.hit);
+        mask passed = group.hit & (alpha < 1.0f);
+        if (ANY(passed)) passed = passed & (alpha <= hash_coin(&key, path.vertex, group.instance, group.primitive, 0));
+        straight = straight | passed;
+        present = present & !passed;
       }
-      Surface surface = make_surface(scene, &hit, wo);
-      real alpha = surface_alpha(scene, &surface, hit.hit);
-      straight = hit.hit & (alpha < 1.0f);
-      if (ANY(straight)) straight = straight & (alpha <= hash_coin(&key, path.vertex, hit.instance, hit.primitive, 0));
-      mask present = hit.hit & !straight;
-      vec3 throughput = mul3(now.throughput, surface_absorption(scene, &surface, hit.t, present));
+      vec3 throughput = mul3(now.throughput, surface_absorption(scene, &surface, group.t, present));
       now.throughput = select3(present, throughput, now.throughput);
-      onward.throughput = now.throughput;
+      onward.throughput = select3(present, throughput, onward.throughput);
       radiance = select3(present, surface_emission(scene, &surface, present), radiance);
       mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
       mask scatters = present & !unlit;
+      if (!ANY(scatters)) continue;
       mask deep = scatters & (now.depth >= (uint_n)(frame->max_depth));
-      if (ANY(scatters)) {
-        Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
-        vec3 wo_local = to_local(&surface.shading, wo);
-        Lobes lobes = bsdf_lobes(&bsdf, scene->tables, wo_local);
-        mask lit = scatters & !deep;
-        vec3 ambient = make_vec3((real)(frame->ambient[0]), (real)(frame->ambient[1]), (real)(frame->ambient[2]));
-        vec3 diffuse = scale3(bsdf.base, (1.0f - bsdf.metallic) * (1.0f - bsdf.transmission));
-        vec3 direct = mul3(ambient, diffuse);
-        for (uint light = 0; light < frame->light_count; light++) {
-          DirectSample sample = direct_from_light(scene, &surface, &lobes, wo_local, light, lit);
-          if (!ANY(sample.valid)) continue;
-          if (film) {
-            int asked[LANES];
-            int_n flags = sample.valid ? (int_n)(1) : (int_n)(0);
-            LANES_STORE(flags, asked);
-            for (int lane = 0; lane < LANES; lane++) rays_traced[1] += asked[lane] != 0;
-          }
-          direct = add3(direct, arriving(scene, tree, &sample));
-        }
-        // Light that this surface scatters is of the next depth; the ray's own depth has its emission.
-        vec3 worth = mul3(now.throughput, direct);
-        mask shines = lit & (max_of3(direct) > 0.0f);
-        if (film && ANY(shines)) film_contribute_keyed(frame, film, shines, &path, SUN_FILM_KEY_DIRECT(path.vertex, 0u), now.depth + (uint_n)(1), worth);
-        seen = select3(shines, add3(seen, worth), seen);
+      Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
+      vec3 wo_local = to_local(&surface.shading, wo);
+      Lobes lobes = bsdf_lobes(&bsdf, scene->tables, wo_local);
+      mask lit = scatters & !deep;
+      vec3 diffuse = scale3(bsdf.base, (1.0f - bsdf.metallic) * (1.0f - bsdf.transmission));
+      vec3 direct = mul3(ambient, diffuse);
+      mask spread = lit & lobes_spread(&lobes);
+      for (uint light = 0; ANY(spread) && light < frame->light_count; light++) {
+        DirectSample sample = direct_from_light(scene, &surface, &lobes, wo_local, light, spread);
+        if (!ANY(sample.valid)) continue;
+        if (film) rays_traced[1] += count_lanes(sample.valid);
+        direct = add3(direct, arriving(scene, tree, &sample));
+      }
+      // Light that this surface scatters is of the next depth; the ray's own depth has its emission.
+      vec3 worth = mul3(now.throughput, direct);
+      mask shines = lit & (max_of3(direct) > 0.0f);
+      if (film && ANY(shines)) film_contribute_keyed(frame, film, shines, &path, SUN_FILM_KEY_DIRECT(path.vertex, 0u), now.depth + one, worth);
+      seen = select3(shines, add3(seen, worth), seen);
+      if (!ANY(scatters & lobes.specular)) continue;
 
-        Deltas deltas = lobes_deltas(&lobes, wo_local);
-        real cutoff = (real)(frame->cutoff);
+      Deltas deltas = lobes_deltas(&lobes, wo_local);
+      vec3 reflected = mul3(now.throughput, deltas.reflected);
+      vec3 size = make_vec3(fabs(reflected.x), fabs(reflected.y), fabs(reflected.z));
+      mask returned = scatters & (max_of3(size) > cutoff);
+      if (ANY(returned)) {
         vec3 mirror_local = make_vec3(-wo_local.x, -wo_local.y, wo_local.z);
-        mirror.direction = normalize3(to_world(&surface.shading, mirror_local));
-        mirror.throughput = mul3(now.throughput, deltas.reflected);
-        mirror.origin = surface_origin(&surface, mirror.direction);
-        mirror.depth = now.depth + (uint_n)(1);
-        vec3 size = make_vec3(fabs(mirror.throughput.x), fabs(mirror.throughput.y), fabs(mirror.throughput.z));
-        mirrored = scatters & (max_of3(size) > cutoff) & (dot3(mirror.direction, surface.normal) > 0.0f);
-        vec3 passed = mul3(now.throughput, deltas.transmitted);
-        size = make_vec3(fabs(passed.x), fabs(passed.y), fabs(passed.z));
-        mask clear = scatters & (max_of3(size) > cutoff);
+        vec3 direction = normalize3(to_world(&surface.shading, mirror_local));
+        returned = returned & (dot3(direction, surface.normal) > 0.0f);
+        mirror.direction = select3(returned, direction, mirror.direction);
+        mirror.origin = select3(returned, surface_origin(&surface, direction), mirror.origin);
+        mirror.throughput = select3(returned, reflected, mirror.throughput);
+        mirrored = mirrored | (returned & !deep);
+        limited = limited | (returned & deep);
+      }
+      vec3 passed = mul3(now.throughput, deltas.transmitted);
+      size = make_vec3(fabs(passed.x), fabs(passed.y), fabs(passed.z));
+      mask clear = scatters & (max_of3(size) > cutoff);
+      if (ANY(clear)) {
         mask null_event = clear & !bsdf.solid;  // smooth thin transmission: the same ray goes on, at no depth
         vec3 bent = normalize3(to_world(&surface.shading, deltas.wi_transmitted));
         clear = clear & (null_event | (dot3(bent, surface.normal) < 0.0f));
-        through = clear & !null_event;
-        straight = straight | null_event;
+        mask enters = clear & bsdf.solid;
         onward.throughput = select3(clear, passed, onward.throughput);
-        onward.direction = select3(through, bent, onward.direction);
-        onward.origin = select3(through, surface_origin(&surface, bent), onward.origin);
-        onward.depth = through ? now.depth + (uint_n)(1) : onward.depth;
-        limited = limited | (deep & (mirrored | through));
-        mirrored = mirrored & !deep;
-        through = through & !deep;
+        onward.direction = select3(enters, bent, onward.direction);
+        onward.origin = select3(enters, surface_origin(&surface, bent), onward.origin);
+        onward.depth = enters ? now.depth + one : onward.depth;
+        if (SUN_PASSABLE) straight = straight | null_event;
+        through = through | (enters & !deep);
+        limited = limited | (enters & deep);
       }
     }
     vec3 worth = mul3(now.throughput, radiance);
     mask shines = active & (max_of3(radiance) > 0.0f);
     if (film && ANY(shines)) film_contribute_lanes(frame, film, shines, &path, now.depth, worth);
     seen = select3(shines, add3(seen, worth), seen);
-    path.vertex = path.vertex + (uint_n)(1);
+    path.vertex = path.vertex + one;
 
     // Straight on: the same ray, strictly behind this hit.
-    onward.passed_t = straight ? hit.t : (real)(0.0f);
-    onward.passed_instance = straight ? hit.instance : none;
-    onward.passed_primitive = straight ? hit.primitive : none;
-    mirror.passed_t = (real)(0.0f);
-    mirror.passed_instance = mirror.passed_primitive = none;
+    mirror.depth = now.depth + one;
+    if (SUN_PASSABLE) {
+      onward.passed_t = straight ? hit.t : (real)(0.0f);
+      onward.passed_instance = straight ? hit.instance : none;
+      onward.passed_primitive = straight ? hit.primitive : none;
+      mirror.passed_t = (real)(0.0f);
+      mirror.passed_instance = mirror.passed_primitive = none;
+    }
     mask goes = through | straight, waits = goes & mirrored;
     if (ANY(waits)) {
       Branch later = select_branch(straight, &onward, &mirror);
@@ -261,7 +238,7 @@ SUN_BODY vec3 walk_trees(const Scene *scene, const TraceScene *tree, const FilmV
         mask here = waits & (level == (uint_n)(k));
         if (ANY(here)) waiting[k] = select_branch(here, &later, &waiting[k]);
       }
-      level = waits ? level + (uint_n)(1) : level;
+      level = waits ? level + one : level;
       mask raised = level > (uint_n)(top);
       if (ANY(raised)) waiting[top++] = later;
     }
@@ -273,7 +250,7 @@ SUN_BODY vec3 walk_trees(const Scene *scene, const TraceScene *tree, const FilmV
         mask here = takes & (level == (uint_n)(k + 1));
         if (ANY(here)) now = select_branch(here, &waiting[k], &now);
       }
-      level = takes ? level - (uint_n)(1) : level;
+      level = takes ? level - one : level;
       for (mask still = level >= (uint_n)(top); top > 0 && !ANY(still); still = level >= (uint_n)(top)) top--;
     }
     active = active & (goes | mirrored | takes);
@@ -304,7 +281,7 @@ SUN_BODY void whitted_bundle(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCE
   TraceScene tree = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count, frame->plane_count);
   FilmView film = open_film(frame, film_words, counts);
   uint_n within = (uint_n)(first) + uint_of_int((int_n)(LANE_NUMBERS));
-  PathNumber place = path_number(frame, (uint_n)(begun) + within);
+  PathNumber place = path_numbers_from(frame, begun + first);
   mask wanted = within < (uint_n)(left);
   place.inside = place.inside & wanted;
   uint traced[3] = {0, 0, 0};  // rays of trees, shadow rays, trees
@@ -332,18 +309,25 @@ SUN_BODY void whitted_view_bundle(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS
   if (first >= frame->paths_per_sample) return;
   Scene scene = open_scene(frame, SCENE_ARGUMENTS);
   TraceScene tree = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count, frame->plane_count);
-  PathNumber place = path_number(frame, (uint_n)(first) + uint_of_int((int_n)(LANE_NUMBERS)));
+  PathNumber place = path_numbers_from(frame, first);
   SamplerKey key = sampler_key(frame->seed, place.picture_x, place.picture_y, place.sample, frame->sampler);
   at_moment(&scene, &key);
   CameraRay ray = camera_ray_at(frame, &key, real_of_uint(place.picture_x) + 0.5f, real_of_uint(place.picture_y) + 0.5f);
   vec3 seen = scale3(walk_trees(&scene, &tree, 0, &place, &key, &ray, place.inside, 0), (real)(scale));
   uint_n color = srgb_byte(seen.x) | (srgb_byte(seen.y) << (uint_n)(8)) | (srgb_byte(seen.z) << (uint_n)(16)) | (uint_n)(0xff000000u);
-  uint colors[LANES], at[LANES];
-  uint_n to = place.inside ? place.y * (uint_n)(frame->tile_width) + place.x : (uint_n)(SUN_NONE);
+  uint colors[LANES];
   LANES_STORE(color, colors);
-  LANES_STORE(to, at);
+  const uint to = FIRST_LANE(place.y) * frame->tile_width + FIRST_LANE(place.x);
+#if LANES > 1
+  if (ALL(place.inside)) {  // rows of a block
+    for (int row = 0; row < LANES / 4; row++) vstore4(vload4((size_t)row, colors), 0, pixels + to + (uint)row * frame->tile_width);
+    return;
+  }
+#endif
+  int inside[LANES];
+  LANES_STORE(place.inside, inside);
   for (int lane = 0; lane < LANES; lane++)
-    if (at[lane] != SUN_NONE) pixels[at[lane]] = colors[lane];
+    if (inside[lane]) pixels[to + (uint)(lane >> 2) * frame->tile_width + (uint)(lane & 3)] = colors[lane];
 }
 
 SUN_TRACE_KERNEL void whitted_view(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_PARAMETERS, float scale, SUN_GLOBAL uint *pixels) {

@@ -50,12 +50,14 @@ SUN_FN Surface triangle_point(const Scene *scene, uint_n instance, uint_n primit
   s.area = sqrt(dot3(n, n)) * 0.5f;
   s.normal = normalize3(n);
   s.offset = surface_offset(&c);
+  s.material = c.material;
+  SCENE_UINT(s.material_flags, scene, materials, c.material, flags);
 #if SUN_SHAPES
   mask shape = is_shape(c.flags, SUN_INSTANCE_SHAPE);
   real shape_uv[2];
   shape_uv[0] = shape_uv[1] = (real)(0.0f);
   if (ANY(shape)) {
-    ShapePoint of_shape = point_of_shape(scene, instance, c.flags, sample_shape_place(c.flags, u));
+    ShapePoint of_shape = point_of_shape(scene, instance, c.flags, sample_shape_place(c.flags, u), shape & is_textured(s.material_flags));
     s.position = select3(shape, of_shape.position, s.position);
     s.normal = select3(shape, of_shape.normal, s.normal);
     s.area = shape ? of_shape.area : s.area;
@@ -64,12 +66,12 @@ SUN_FN Surface triangle_point(const Scene *scene, uint_n instance, uint_n primit
     shape_uv[1] = of_shape.uv[1];
   }
 #endif
-  s.material = c.material;
-  GATHER_UINT(s.material_flags, scene->materials, c.material, flags);
   s.uv0[0] = s.uv0[1] = s.uv1[0] = s.uv1[1] = (real)(0.0f);
   for (int i = 0; i < 4; i++) s.color[i] = (real)(1.0f);
 #if SUN_TEXTURES
+#if SUN_TRIANGLES
   surface_coordinates(scene, &s, &c, b.x, b.y);
+#endif
 #if SUN_SHAPES
   for (int i = 0; i < 2; i++) {
     s.uv0[i] = shape ? shape_uv[i] : s.uv0[i];
@@ -213,7 +215,7 @@ SUN_FN DirectSample direct_of(const Scene *scene, const Surface *s, const Lobes 
 
 // A ray to one punctual light, wherever it is seen from: its pdf is 1.
 SUN_FN DirectSample direct_from_light(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, uint light, mask active) {
-  LightLanes lanes = lights_at(scene, (uint_n)(light));
+  LightLanes lanes = SUN_MOTION ? lights_at(scene, (uint_n)(light)) : load_light(scene->lights, light);
   LightSample of_light = sample_of_light(&lanes, s->position);
   EmitterSample sample;
   sample.emission = of_light.radiance;

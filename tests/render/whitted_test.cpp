@@ -201,6 +201,37 @@ TEST(Whitted, OneHashWhateverTheWays) {
   EXPECT_GT(counts.shadow_rays, counts.paths / 2);
 }
 
+// Few shapes are asked one by one, each for all lanes, which are then shaded shape by shape; many stand in the tree. With and without triangles and panes:
+// one hash.
+TEST(Whitted, OneHashHoweverShapesAreFound) {
+  for (const int count : {9, 40}) {
+    Scene scene;
+    add_shape(scene, Kind::plane, matt({0.5f, 0.6f, 0.7f}), scaled({1, 1, 1}, {0, -0.3f, 0}));
+    for (int i = 0; i < count; i++) {
+      const float x = static_cast<float>(i % 8) - 3.5f, z = -static_cast<float>(i / 8), size = 0.3f + 0.05f * static_cast<float>(i % 3);
+      const Material material = i % 4 == 0 ? glass({0.2f, 0.1f, 0}) : i % 4 == 1 ? metal({0.8f, 0.7f, 0.6f}, 0) : i % 4 == 2 ? metal({0.6f, 0.7f, 0.8f}, 0.3f) : matt({0.7f, 0.3f, 0.2f});
+      if (i % 3) add_shape(scene, Kind::sphere, material, scaled({size, size, size}, {x, 0, z}));
+      else add_shape(scene, i % 2 ? Kind::disk : Kind::quad, material, {{size, 0.1f, 0}, {-0.1f, 0.2f, size}, {0, -size, 0.2f}, {x, 0.1f, z}});
+    }
+    add_point_light(scene, {1, 4, 2}, {30, 30, 30});
+    set_sky(scene, {0.3f, 0.4f, 0.5f});
+    add_camera(scene, {0, 1.5f, 4}, {0, 0, -1}, 50);
+    const Case made(std::move(scene));
+    RenderSettings s = whitted(5);
+    s.width = s.x1 = 40;
+    s.height = s.y1 = 28;
+    s.ambient = {0.1f, 0.1f, 0.1f};
+    const Film reference = render(made, s, {0, 2}).film;
+    std::vector<std::pair<std::string, Ways>> ways(4);
+    ways[0] = {"as the command does", {}}, ways[0].second.trimmed = true;
+    ways[1] = {"asked", {}}, ways[1].second.trimmed = true, ways[1].second.few_shapes = true;
+    ways[2] = {"asked, lanes 1", {}}, ways[2].second.trimmed = true, ways[2].second.few_shapes = true, ways[2].second.lanes = 1;
+    ways[3] = {"asked, the tree for triangles", {}}, ways[3].second.few_shapes = true;
+    for (const auto &[how, way] : ways) EXPECT_EQ(film_hash(render(made, s, {0, 2}, way).film).hex(), film_hash(reference).hex()) << how << ", " << count;
+    EXPECT_GT(mean(reference, "beauty", whole(reference), 0), 0.05);
+  }
+}
+
 TEST(Whitted, RefusesTreesThatAreTooDeep) {
   Scene scene;
   add_camera(scene, {0, 0, 1}, {0, 0, 0}, 40);

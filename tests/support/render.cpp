@@ -29,7 +29,8 @@ Kept &kept() {
 }
 
 const Programs &programs_for(const Variant &v, std::size_t work_group) {
-  const unsigned features = (v.passable ? 1u : 0u) | (v.specular ? 2u : 0u) | (v.textures ? 4u : 0u) | (v.branching ? 8u : 0u) | (v.bidirectional ? 16u : 0u) | (v.shapes ? 32u : 0u) | (v.light_map ? 64u : 0u) | (v.photons ? 128u : 0u);
+  const unsigned features = (v.passable ? 1u : 0u) | (v.specular ? 2u : 0u) | (v.textures ? 4u : 0u) | (v.branching ? 8u : 0u) | (v.bidirectional ? 16u : 0u) | (v.shapes ? 32u : 0u) | (v.light_map ? 64u : 0u) | (v.photons ? 128u : 0u) |
+                            (v.few_shapes ? 256u : 0u) | (v.triangles ? 512u : 0u);
   auto &found = kept().programs[{work_group, v.lanes, v.layout, v.columns, v.chunk, features, v.motion}];
   if (!found) found = std::make_unique<Programs>(test_device(work_group), v);
   return *found;
@@ -43,7 +44,9 @@ Variant variant_of(const Case &scene, const RenderSettings &settings, const Ways
   v.columns = ways.columns.value_or(v.columns);
   v.chunk = ways.chunk.value_or(v.chunk);
   v.motion = ways.motion.value_or(scene.flat(v.layout).motion());
-  return ways.trimmed ? scene_variant(v, scene.flat(v.layout), settings) : v;
+  if (ways.trimmed) v = scene_variant(v, scene.flat(v.layout), settings);
+  v.few_shapes = ways.few_shapes.value_or(v.few_shapes);
+  return v;
 }
 
 }  // namespace

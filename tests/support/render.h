@@ -18,7 +18,7 @@ struct Ways {
   unsigned pool = 0;
   std::optional<unsigned> lanes, chunk;
   std::optional<Layout> layout;
-  std::optional<bool> columns;
+  std::optional<bool> columns, few_shapes;
   std::optional<int> motion;  // SUN_MOTION of the programs; as the scene needs
   std::size_t work_group = 0;
   bool trimmed = false;  // code that the scene does not need is left out, as the command does; otherwise one set of programs serves all scenes

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/file.h"
 #include "flatten/bvh.h"
 #include "kernels/hits/tracer.h"
 #include "scene/ray.h"
@@ -176,6 +177,151 @@ TEST(Shapes, OfEveryLayoutTheSameBits) {
       EXPECT_EQ(wrong_any, 0u) << layout_name(layout);
     }
   }
+}
+
+// Shapes of every kind where chance puts them, scaled along the axes or sheared and mirrored; some twice in one place, some that touch.
+Scene scattered_shapes(unsigned seed, bool with_mesh) {
+  Scene scene = some_shapes(with_mesh);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> place(-2.5f, 2.5f), size(0.2f, 1.2f), skew(-0.5f, 0.5f);
+  for (int i = 0; i < 12; i++) {
+    const auto kind = static_cast<Shape::Kind>(i % 4);
+    const int material = i % 3 == 0;
+    glm::mat4x3 m = placed({size(random), 0, 0}, {0, size(random), 0}, {0, 0, size(random)}, {place(random), place(random), place(random)});
+    if (i % 2) m = placed({m[0].x, skew(random), skew(random)}, {skew(random), i % 4 == 3 ? -m[1].y : m[1].y, skew(random)}, {skew(random), skew(random), m[2].z}, m[3]);
+    scene.shapes.push_back({kind, "scattered", material, m});
+    if (i < 4) scene.shapes.push_back({kind, "twin", 0, m});
+  }
+  // In the plane of the floor, and a ball that stands on it.
+  scene.shapes.push_back({Shape::Kind::quad, "mat", 0, placed({1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5f, -0.5f, 0})});
+  scene.shapes.push_back({Shape::Kind::sphere, "standing", 0, placed({0.5f, 0, 0}, {0, 0.5f, 0}, {0, 0, 0.5f}, {1, 0, 1})});
+  return scene;
+}
+
+// Rays from everywhere, from within balls, that graze them, along the floor, that end before or at what they would meet, that have no direction; and on
+// behind what they met.
+std::vector<TracedRay> all_sorts_of_rays(const Scene &scene, const FlatScene &flat, const Tree &tree) {
+  std::vector<TracedRay> rays = random_rays(1500, 4);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> turn(-1, 1);
+  const auto direction = [&] { return glm::normalize(glm::dvec3(turn(random), turn(random), turn(random) + 1e-3)); };
+  for (const Shape &shape : scene.shapes)
+    for (int i = 0; i < 24; i++) {
+      const glm::dmat3 m(glm::dvec3(shape.transform[0]), glm::dvec3(shape.transform[1]), glm::dvec3(shape.transform[2]));
+      const glm::dvec3 center(shape.transform[3]), normal = direction(), along = glm::normalize(glm::cross(normal, direction()));
+      rays.push_back(ray_of(center + m * (0.5 * normal), direction()));
+      rays.push_back(ray_of(center + m * normal - m * (4.0 * along) * (1 + 1e-7 * i), m * along));
+    }
+  for (int i = 0; i < 64; i++) rays.push_back(ray_of({-3, -0.5, 0.1 * i - 3}, {1, i % 3 ? 0 : 1e-9, 0.01 * i}));
+  const std::size_t fresh = rays.size();
+  for (std::size_t i = 0; i < fresh; i++) {
+    const Hit hit = host_closest(flat, tree, rays[i], SUN_WANT_ALL);
+    if (hit.instance == SUN_NONE) continue;
+    TracedRay on = rays[i], ends = rays[i];
+    on.ray.passed_t = hit.t;
+    on.passed_instance = hit.instance;
+    on.passed_primitive = hit.primitive;
+    rays.push_back(on);
+    ends.ray.t_max = i % 2 ? hit.t : std::nextafter(hit.t, INFINITY);
+    rays.push_back(ends);
+  }
+  rays.push_back(ray_of({0, 0, 5}, {0, 0, 0}));
+  rays.push_back(ray_of({0, 0, INFINITY}, {0, 0, -1}));
+  rays.push_back(ray_of({0, 0, 5}, {0, NAN, -1}));
+  return rays;
+}
+
+// LANES rays that ask each shape, and the tree for the triangles: to the bit the hits of one ray in the binary tree.
+TEST(Shapes, AskedByLanesGiveTheHitsOfTheTree) {
+  const std::optional<Device> device = test_device();
+  if (!device) GTEST_SKIP() << "SKIP: no OpenCL device";
+  const std::vector<std::byte> bytes = read_file(SUNSTONE_SOURCE_DIR "/tests/kernels/probes/lanes.cl");
+  const std::string text(reinterpret_cast<const char *>(bytes.data()), bytes.size());
+  struct Way {
+    int lanes;
+    Layout layout;
+    bool few, with_mesh;
+  };
+  const Way ways[] = {{1, Layout::binary, true, false}, {1, Layout::binary, true, true}, {8, Layout::wide8, true, true}, {16, Layout::wide16, true, false},
+                      {16, Layout::wide16, true, true}, {16, Layout::binary, true, true}, {16, Layout::wide16, false, true}};
+  for (const Way &way : ways) {
+    const Program program = Program::from_text(*device, "lanes.cl", text,
+                                               {{"LANES", way.lanes}, {"SUN_LAYOUT", int(way.layout)}, {"SUN_FEW_SHAPES", way.few}, {"SUN_TRIANGLES", way.with_mesh}});
+    const Kernel kernel(program, "probe_lanes");
+    for (const unsigned seed : {1u, 2u}) {
+      const Scene scene = scattered_shapes(seed, way.with_mesh);
+      const FlatScene flat = flattened(scene);
+      const Tree binary = build_tree(flat, Layout::binary), tree = build_tree(flat, way.layout);
+      const std::vector<TracedRay> rays = all_sorts_of_rays(scene, flat, binary);
+      kernel::Frame frame{};
+      frame.instance_count = uint(flat.instances.size() - flat.plane_count);
+      frame.plane_count = uint(flat.plane_count);
+      frame.first_shape = uint(flat.instances.size() - flat.shape_count);
+      for (std::size_t axis = 0; axis < 3; axis++) {
+        frame.lower[axis] = INFINITY;
+        frame.upper[axis] = -INFINITY;
+        for (uint i = 0; i < frame.instance_count; i++) {
+          frame.lower[axis] = std::min(frame.lower[axis], flat.instances[i].lower[axis]);
+          frame.upper[axis] = std::max(frame.upper[axis], flat.instances[i].upper[axis]);
+        }
+      }
+      std::vector<TraceRay> plain;
+      std::vector<uint> passed;
+      for (const TracedRay &ray : rays) {
+        plain.push_back(ray.ray);
+        passed.insert(passed.end(), {ray.passed_instance, ray.passed_primitive});
+      }
+      const Buffer<kernel::Frame> frames(*device, std::span<const kernel::Frame>(&frame, 1), "frame");
+      const Buffer<TraceRay> ray_buffer(*device, std::span<const TraceRay>(plain), "rays");
+      const Buffer<uint> passed_buffer(*device, std::span<const uint>(passed), "passed"), blocked(*device, rays.size(), "blocked");
+      const Buffer<Hit> hits(*device, rays.size(), "hits");
+      const Buffer<std::byte> nodes(*device, std::span<const std::byte>(tree.nodes), "nodes"), leaves(*device, std::span<const std::byte>(tree.leaves), "leaves");
+      const Buffer<uint> list(*device, std::span<const uint>(tree.instance_list), "list"), roots(*device, std::span<const uint>(tree.roots), "roots");
+      const Buffer<kernel::Fragment> fragments(*device, std::span<const kernel::Fragment>(flat.fragments), "fragments");
+      const Buffer<kernel::Instance> instances(*device, std::span<const kernel::Instance>(flat.instances), "instances");
+      Kernel run = kernel;
+      run.run((rays.size() + std::size_t(way.lanes) - 1) / std::size_t(way.lanes), frames, ray_buffer, passed_buffer, hits, blocked, uint(rays.size()), uint(SUN_WANT_ALL),
+              nodes, leaves, list, roots, uint(tree.top_root), fragments, instances);
+      const std::vector<Hit> found = hits.download();
+      const std::vector<uint> stopped = blocked.download();
+      std::size_t wrong = 0, wrong_any = 0, some = 0, worst = 0;
+      for (std::size_t i = 0; i < rays.size(); i++) {
+        const Hit expected = host_closest(flat, binary, rays[i], SUN_WANT_ALL);
+        some += expected.instance != SUN_NONE;
+        if (!same(found[i], expected)) {
+          wrong++;
+          worst = i;
+        }
+        wrong_any += (stopped[i] != 0) != (expected.instance != SUN_NONE);
+      }
+      const std::string how = "lanes " + std::to_string(way.lanes) + ", " + layout_name(way.layout) + (way.few ? ", few" : "") + (way.with_mesh ? ", with a mesh" : "");
+      EXPECT_EQ(wrong, 0u) << how << ", ray " << worst;
+      EXPECT_EQ(wrong_any, 0u) << how;
+      EXPECT_GT(some, rays.size() / 3) << how;
+      EXPECT_LT(some, rays.size()) << how;
+    }
+  }
+}
+
+// What is aligned with the axes is met as if it were not.
+TEST(Shapes, AlignedOnesAreMetAsTheOthers) {
+  const Scene scene = scattered_shapes(3, false);
+  const FlatScene flat = flattened(scene);
+  FlatScene plain = flat;
+  std::size_t aligned = 0;
+  for (kernel::Instance &instance : plain.instances) {
+    aligned += (instance.flags & SUN_INSTANCE_ALIGNED) != 0;
+    instance.flags &= ~SUN_INSTANCE_ALIGNED;
+  }
+  EXPECT_GT(aligned, 6u);
+  EXPECT_LT(aligned, flat.shape_count);
+  const Tree tree = build_tree(flat, Layout::binary);
+  std::size_t wrong = 0;
+  for (const TracedRay &ray : all_sorts_of_rays(scene, flat, tree)) {
+    const Hit a = host_closest(flat, tree, ray, SUN_WANT_ALL), b = host_closest(plain, tree, ray, SUN_WANT_ALL);
+    wrong += !(a.t == b.t && a.u == b.u && a.v == b.v && a.instance == b.instance && a.primitive == b.primitive);
+  }
+  EXPECT_EQ(wrong, 0u);
 }
 
 // One after the other, each once: a ray goes on strictly behind what it has passed.
