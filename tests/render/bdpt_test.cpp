@@ -307,6 +307,38 @@ TEST(Bdpt, Furnace) {
   }
 }
 
+// Walls that shine and absorb nothing, matt, coated, rough and mirroring: each bounce is 1, whichever way a path was found. Paths turn at deltas whose chances differ
+// from either side.
+TEST(Bdpt, WhiteFurnace) {
+  Scene scene;
+  Material coat = matt({1, 1, 1});
+  coat.f0 = glm::vec3(0.3f);
+  coat.f90 = 1;
+  coat.roughness = 0;
+  Material satin = coat;
+  satin.roughness = 0.5f;
+  const Material kinds[6] = {matt({1, 1, 1}), coat, metal({1, 1, 1}, 0), satin, metal({1, 1, 1}, 0.6f), coat};
+  for (int face = 0; face < 6; face++) {
+    Material wall = kinds[face];
+    wall.emission = {1, 1, 1};
+    wall.double_sided = false;
+    glm::vec3 out(0), a(0), b(0);
+    const int axis = face / 2;
+    out[axis] = face % 2 ? 1.0f : -1.0f;
+    a[(axis + 1) % 3] = 1;
+    b[(axis + 2) % 3] = 1;
+    add(scene, face % 2 ? quad(out, b, a) : quad(out, a, b), wall);
+  }
+  add_camera(scene, {0.2f, 0.1f, 0.3f}, {-1, -0.3f, -1}, 80);
+  RenderSettings s = picture(16, 16, 4);
+  s.integrator = "bdpt";
+  const std::vector<Film> films = render_seeds(Case(std::move(scene)), s, 48, seeds);
+  for (const std::string &layer : bounces(0, 4)) {
+    EXPECT_EQ(differs(films, layer, whole(films[0]), {1, 1, 1}, 1e-3), "");
+    EXPECT_LT(relative_error(films, layer), 0.002) << layer;
+  }
+}
+
 TEST(Bdpt, CountsItsPaths) {
   RenderSettings s = picture(37, 23, 5);
   s.integrator = "bdpt";
