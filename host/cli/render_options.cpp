@@ -83,13 +83,13 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--nee", o.nee, "hybrid: shadow rays at every hit, or at the camera ray's first hit alone [every]")->type_name("every|first")->group("Integrator");
   command.add_option("--absorption", o.absorption, "hybrid: chance that a path ends at a scattering, from 0 to below 1 [by its throughput]")->type_name("A")->group("Integrator");
   command.add_flag("--double-count", o.double_count, "hybrid: the classic mistake, on purpose: a light that is hit counts beside its shadow rays")->group("Integrator");
-  command.add_option("--heuristic", o.heuristic, "bdpt: strategies share a path by the power heuristic, or by the balance heuristic [power]")->type_name("power|balance")->group("Integrator");
+  command.add_option("--heuristic", o.heuristic, "bdpt, vcm: strategies share a path by the power heuristic, or by the balance heuristic [power]")->type_name("power|balance")->group("Integrator");
   command.add_option("--strategy", o.strategy, "bdpt: paths of S vertices from the light and T from the eye alone")->type_name("S,T")->group("Integrator");
   command.add_flag("--unweighted", o.unweighted, "bdpt: that strategy as if there were no other")->group("Integrator");
   command.add_option("--photons", o.photons, "sppm: light paths of a sample, whose photons all pixels share [as many as pixels, 1024 to 1048576]; photon: of the render [500000]")->type_name("N")->group("Integrator");
-  command.add_option("--radius", o.radius, "sppm, photon: within which photons count; of sppm for the first sample, as it shrinks [by the scene's size and the photons]")->type_name("METRES")->group("Integrator");
+  command.add_option("--radius", o.radius, "sppm, photon, vcm: within which light vertices count; of sppm and vcm for the first sample, as it shrinks [by the scene's size and the photons]")->type_name("METRES")->group("Integrator");
   command.add_option("--caustic-radius", o.caustic_radius, "photon: within which photons of caustics count [half of --radius]")->type_name("METRES")->group("Integrator");
-  command.add_option("--alpha", o.alpha, "sppm: how much of what a sample adds is kept by the shrinking radius, above 0 to 1 [0.6667]")->type_name("A")->group("Integrator");
+  command.add_option("--alpha", o.alpha, "sppm, vcm: how much of what a sample adds is kept by the shrinking radius, above 0 to 1 [0.6667]")->type_name("A")->group("Integrator");
   command.add_option("--ambient", o.ambient, "whitted: light that is about everywhere, for matt surfaces [0,0,0]")->type_name("R,G,B")->group("Integrator");
   command.add_option("--cutoff", o.cutoff, "whitted: rays that are worth less are not followed [1/512]")->type_name("X")->group("Integrator");
   command.add_option("--camera", o.camera, "The file's camera of this name or number [0]")->type_name("NAME|INDEX")->group("Camera");

@@ -37,6 +37,9 @@ std::span<const Plan> integrators() {
       {"sppm", "stochastic progressive photon mapping: photons around what the eye sees, ever closer", "Hachisuka & Jensen 2009, Knaus & Zwicker 2011", true, true, false,
        {gather_paths, generate, intersect, first_hit, gather, shade, gather_shadow_rays, occlude, roulette}, {}, {"--photons", "--radius", "--alpha"}, "", false,
        {gather_paths, emit, intersect, deposit, roulette}, true, false, true},
+      {"vcm", "vertex connection and merging: bdpt, whose eye paths also take what light paths left around them", "Georgiev, Krivanek, Davidovic, Slusallek 2012", true, true, false,
+       {gather_paths, emit, intersect, first_hit, gather, connect, gather_shadow_rays, occlude_all, roulette}, {}, {"--heuristic", "--radius", "--alpha"}, "", true,
+       {gather_paths, emit, intersect, deposit, gather_shadow_rays, occlude_all, roulette}, false, false, true},
       {"whitted", "mirrored and refracted rays, both followed, and point lights: no light between matt surfaces", "Whitted 1980", false, false, false, {whitted}, {},
        {"--ambient", "--cutoff"},
        "what emissive surfaces and the environment light (they are seen, directly and in mirrors), and light between matt surfaces; --integrator path follows both"},
@@ -108,7 +111,7 @@ void check_settings(const Plan &plan, const RenderSettings &settings) {
   if (settings.radius != plain.radius) check_flag(plan, "--radius");
   if (settings.caustic_radius != plain.caustic_radius) check_flag(plan, "--caustic-radius");
   if (settings.alpha != plain.alpha) check_flag(plan, "--alpha");
-  if (plan.photons) check_photons(plan, settings);
+  if (!plan.light_walk.empty()) check_photons(plan, settings);
   if (settings.ambient != plain.ambient) check_flag(plan, "--ambient");
   if (settings.cutoff != plain.cutoff) check_flag(plan, "--cutoff");
   if (std::ranges::find(plan.walk, Stage::whitted) != plan.walk.end() && settings.max_depth > SUN_WHITTED_DEPTH)
@@ -169,10 +172,10 @@ void check_plan(const Plan &plan) {
                light(Stage::deposit) < static_cast<std::ptrdiff_t>(plan.light_walk.size()),
            "light subpaths are gathered, begun, intersected and stored");
   }
-  demand(has(Stage::gather) == plan.photons && has(Stage::gather_caustics) == (plan.photons && plan.map_once), "photons are looked at, or there are none");
-  if (plan.photons) demand(!plan.light_walk.empty() && at(Stage::intersect) < at(Stage::gather) && at(Stage::gather) < at(shade), "gather stands between intersect and shade");
-  demand(has(Stage::deposit) == plan.bidirectional, "light subpaths are begun and walked, or neither");
-  if (plan.bidirectional) demand(at(Stage::intersect) < at(Stage::deposit) && at(Stage::deposit) < at(Stage::gather_shadow_rays), "deposit stands between intersect and the shadow rays");
+  demand(has(Stage::gather) == !plan.light_walk.empty() && has(Stage::gather_caustics) == (plan.photons && plan.map_once), "photons are looked at, or there are none");
+  if (has(Stage::gather)) demand(at(Stage::intersect) < at(Stage::gather) && at(Stage::gather) < at(shade), "gather stands between intersect and shade");
+  demand(has(Stage::deposit) == (plan.bidirectional && plan.light_walk.empty()), "light subpaths are begun and walked, or neither");
+  if (has(Stage::deposit)) demand(at(Stage::intersect) < at(Stage::deposit) && at(Stage::deposit) < at(Stage::gather_shadow_rays), "deposit stands between intersect and the shadow rays");
   demand(has(occlude) == plan.direct && has(Stage::gather_shadow_rays) == plan.direct, "shadow rays are sent and traced, or neither");
   if (plan.direct)
     demand(at(shade) < at(Stage::gather_shadow_rays) && at(Stage::gather_shadow_rays) < at(occlude), "shadow rays are traced before they are there");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "base/error.h"
@@ -164,6 +165,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   std::ranges::copy(settings.ambient, frame.ambient);
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
   s.resolve_photons();
+  if (s.plan.bidirectional && !s.plan.light_walk.empty()) frame.flags |= SUN_FRAME_EYE_PASS;
   s.film.settings = film_settings(s.settings, camera, scene.camera_keys);
 
   for (const Stage stage : s.plan.walk) {
@@ -243,14 +245,15 @@ void Renderer::State::take_counts(std::vector<kernel::uint> now) {
 
 // What is left to the program: as many photons as the picture has pixels, and a radius within which there are about ten of each path's vertices.
 void Renderer::State::resolve_photons() {
-  if (!plan.photons) return;
+  if (plan.light_walk.empty()) return;
   constexpr std::uint32_t least = 1u << 10, most = 1u << 20, once = 500000;
   constexpr double spread = 4;
-  if (settings.photons == 0) settings.photons = plan.map_once ? once : std::clamp(frame.width * frame.height, least, most);
+  if (!plan.photons) frame.light_paths = frame.width * frame.height;  // each eye path has one of its own
+  else if (settings.photons == 0) settings.photons = plan.map_once ? once : std::clamp(frame.width * frame.height, least, most);
+  if (plan.photons) frame.light_paths = settings.photons;
   const double size = frame.scene_radius > 0 ? frame.scene_radius : 1;
-  if (settings.radius == 0) settings.radius = static_cast<float>(std::clamp(spread * size / std::sqrt(static_cast<double>(settings.photons)), 1e-6, 1e6));
+  if (settings.radius == 0) settings.radius = static_cast<float>(std::clamp(spread * size / std::sqrt(static_cast<double>(frame.light_paths)), 1e-6, 1e6));
   if (settings.caustic_radius == 0) settings.caustic_radius = settings.radius / 2;
-  frame.light_paths = settings.photons;
 }
 
 // The global schedule: a pure function of the iteration, so that iterations may be done in any order and place [Knaus11 eq. 14].
@@ -266,7 +269,7 @@ float Renderer::State::radius_of(std::uint64_t iteration) {
 // Light subpaths of a sample, in batches of the pool, into the map.
 void Renderer::State::trace_light(StageRunner &runner, std::uint64_t sample) {
   const kernel::Frame of_eyes = frame;
-  frame.flags |= SUN_FRAME_LIGHT_PASS | (plan.photons ? SUN_FRAME_PHOTONS : 0u);
+  frame.flags = (frame.flags & ~SUN_FRAME_EYE_PASS) | SUN_FRAME_LIGHT_PASS | (plan.photons ? SUN_FRAME_PHOTONS : 0u);
   frame.sample_first = static_cast<kernel::uint>(sample);
   device_frame.upload(std::span(&frame, 1));
   const std::uint32_t paths = plan.photons ? settings.photons : frame.paths_per_sample;
@@ -296,8 +299,10 @@ void Renderer::State::look_at_light(StageRunner &runner, std::uint64_t sample) {
   const std::uint64_t wanted = plan.map_once ? 0 : sample;
   if (mapped != wanted) {
     mapped.reset();
+    const double radius = plan.map_once ? settings.radius : radius_of(sample);
+    frame.merges = static_cast<float>(std::numbers::pi * radius * radius * frame.light_paths);
     trace_light(runner, wanted);
-    map->build(all, plan.map_once ? settings.radius : radius_of(sample), 0);
+    map->build(all, static_cast<float>(radius), 0);
     if (plan.map_once) map->build(caustics, settings.caustic_radius, SUN_LIGHT_VERTEX_CAUSTIC);
     mapped = wanted;
   }
@@ -433,7 +438,7 @@ StageProbe::StageProbe(Renderer &renderer, SampleRange samples) : state_(new Sta
   r.frame.sample_first = static_cast<kernel::uint>(samples.first);
   r.device_frame.upload(std::span(&r.frame, 1));
   r.seen.assign(2 * SUN_COUNT_WORDS, 0);
-  const std::uint64_t at_most = max_paths_of_a_launch / r.frame.paths_per_sample;
+  const std::uint64_t at_most = r.map && !r.plan.map_once ? 1 : max_paths_of_a_launch / r.frame.paths_per_sample;
   r.seen[SUN_COUNT_PATHS] = static_cast<kernel::uint>(std::min(samples.last - samples.first, at_most) * r.frame.paths_per_sample);
   r.pool->counts.upload(r.seen);
 }

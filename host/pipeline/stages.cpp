@@ -30,13 +30,16 @@ Switches on_paths(const Variant &v) {
   switches["SUN_CHUNK"] = static_cast<int>(v.chunk);
   switches["SUN_BRANCHING"] = v.branching;
   switches["SUN_PHOTONS"] = v.photons;
+  switches["SUN_MERGING"] = v.light_map && !v.photons;
   return switches;
 }
 
 std::vector<std::string> stages_on_paths(const Variant &v) {
   std::vector<std::string> stages = {"generate", "first_hit", "shade", "roulette", "compact"};
   if (v.branching) stages.push_back("branch");
-  if (v.bidirectional) stages.insert(stages.end(), {"emit", "deposit", v.photons ? "gather" : "connect"});
+  if (v.bidirectional) stages.insert(stages.end(), {"emit", "deposit"});
+  if (v.bidirectional && !v.photons) stages.push_back("connect");
+  if (v.light_map) stages.push_back("gather");
   return stages;
 }
 std::vector<std::string> stages_on_rays(const Variant &v) {
@@ -163,9 +166,8 @@ StageRunner::StageRunner(const Programs &p, const DeviceScene &scene, const Pool
   if (!p.variant.bidirectional) return;
   emit_.emplace(p.paths, "emit");
   deposit_.emplace(p.paths, "deposit");
-  if (p.variant.photons) {
-    gather_.emplace(p.paths, "gather");
-  } else {
+  if (p.variant.light_map) gather_.emplace(p.paths, "gather");
+  if (!p.variant.photons) {
     connect_.emplace(p.paths, "connect");
     occlude_all_.emplace(p.rays, "occlude_all");
   }
@@ -185,7 +187,7 @@ void StageRunner::look_at(const LightMap &map, const LightGrid &all, const Light
 
 void StageRunner::run_gather(const LightGrid &grid, kernel::uint phase) {
   gather_->run((pool_.slots + lanes_ - 1) / lanes_, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1],
-               scene_.pages[2], scene_.pages[3], pool_.paths, pool_.status, pool_.hits, map_->vertices(), grid.entries, grid.starts, map_->records(), grid.mask, grid.radius, phase,
+               scene_.pages[2], scene_.pages[3], pool_.paths, pool_.walks, pool_.status, pool_.hits, map_->vertices(), grid.entries, grid.starts, map_->records(), grid.mask, grid.radius, phase,
                pool_.rays[current_], pool_.counts, film_);
 }
 
@@ -227,7 +229,8 @@ void StageRunner::run(Stage stage) {
       break;
     case Stage::connect:
       connect_->run(bundles, frame_, scene_.vertices, scene_.extras, scene_.triangles, scene_.instances, scene_.records, scene_.pages[0], scene_.pages[1], scene_.pages[2],
-                    scene_.pages[3], pool_.paths, pool_.walks, pool_.light_vertices, pool_.status, pool_.hits, pool_.shadow_rays, rays, pool_.counts, film_);
+                    scene_.pages[3], pool_.paths, pool_.walks, map_ ? map_->vertices() : pool_.light_vertices, map_ ? map_->path_starts() : pool_.light_vertices, pool_.status,
+                    pool_.hits, pool_.shadow_rays, rays, pool_.counts, film_);
       break;
     case Stage::occlude_all:
       occlude_all_->run(pool_.slots, frame_, scene_.nodes, scene_.leaves, scene_.instance_list, scene_.roots, scene_.top_root, scene_.fragments, scene_.vertices, scene_.extras,

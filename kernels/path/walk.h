@@ -10,7 +10,7 @@ SUN_NAMESPACE_BEGIN
 
 // LANES of them; the words are named in shared/bidirectional.h.
 typedef struct Walk {
-  real dVCM, dVC;
+  real dVCM, dVC, dVM;
   vec3 emitted, absorption;
   uint_n vertices, rough, path;
   mask far, holds, unseen;
@@ -22,6 +22,7 @@ SUN_FN Walk walk_load(const SUN_GLOBAL uint *walks, uint_n slots) {
   Walk walk;
   walk.dVCM = real_of_bits(words[SUN_WALK_dVCM]);
   walk.dVC = real_of_bits(words[SUN_WALK_dVC]);
+  walk.dVM = real_of_bits(words[SUN_WALK_dVM]);
   walk.vertices = words[SUN_WALK_VERTICES];
   walk.rough = words[SUN_WALK_ROUGH];
   walk.path = words[SUN_WALK_PATH];
@@ -38,6 +39,7 @@ SUN_FN void walk_store(SUN_GLOBAL uint *walks, uint_n slots, mask active, const 
   for (int k = 0; k < SUN_WALK_WORDS; k++) words[k] = (uint_n)(0);
   words[SUN_WALK_dVCM] = bits_of_real(walk->dVCM);
   words[SUN_WALK_dVC] = bits_of_real(walk->dVC);
+  words[SUN_WALK_dVM] = bits_of_real(walk->dVM);
   words[SUN_WALK_VERTICES] = walk->vertices;
   words[SUN_WALK_ROUGH] = walk->rough;
   words[SUN_WALK_PATH] = walk->path;

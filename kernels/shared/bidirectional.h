@@ -25,6 +25,7 @@ SUN_NAMESPACE_BEGIN
 #define SUN_WALK_PATH 11         // number of the light subpath within its launch, and one: 0 is none
 #define SUN_WALK_HOLDS 12        // 1: a light vertex is stored of the depth at hand
 #define SUN_WALK_UNSEEN 13       // 1: from a light without extent, and nothing but deltas since
+#define SUN_WALK_dVM 14          // where walks merge, too
 #define SUN_WALK_WORDS 16
 
 // The words of a light vertex: two records. Who looks at light that arrives, and not at what the surface there does with it, needs the first alone.

@@ -40,6 +40,7 @@ SUN_STATIC_ASSERT(sizeof(Camera) == 64, camera_is_64_bytes);
 #define SUN_FRAME_LIGHT_PASS 4096u  // light subpaths alone: a slot that has walked one is free
 #define SUN_FRAME_PHOTONS 8192u     // they are photons: numbered by themselves and not by pixels, stored from their second hit on, and lit by all of a sky
 #define SUN_FRAME_FINAL_GATHER 16384u // eye paths look at the map of all photons one ray after the first matt surface, and there at that of caustics
+#define SUN_FRAME_EYE_PASS 32768u   // eye subpaths alone: their light subpaths have been walked
 #define SUN_FRAME_END_ON_LIGHT 64u // a path ends on the emitter that it hits
 #define SUN_FRAME_ONE_TIME 1024u   // all pixels take the same time of the shutter for the same sample number
 #define SUN_FRAME_CAMERA_MOVES 2048u  // cameras for all keys of the shutter's time stand behind the frame
@@ -96,9 +97,11 @@ typedef struct Frame {
   float cutoff;                  // a ray whose worth is below this is not followed
   float ambient[3];              // radiance that is about in all places, for what scatters it diffusely
   uint motion_steps;             // keys less one while the shutter is open; 0: all is still
-  uint light_paths;              // of a light pass of photons
+  uint light_paths;              // of a light pass whose vertices are gathered
+  float merges;                  // where walks merge: light subpaths times the area of the disk in which they do
   uint first_shape;              // instances from there on are shapes, those with bounds before the planes
   float lower[3], upper[3];      // bounds of all instances that trees know
+  uint pad[3];
 } Frame;
 SUN_STATIC_ASSERT(sizeof(Frame) % 16 == 0, frame_is_whole_words);
 

@@ -13,7 +13,8 @@ SUN_NAMESPACE_BEGIN
 #define SUN_LIGHT_VERTEX_FRONT 4u
 #define SUN_LIGHT_VERTEX_CAUSTIC 8u
 #define SUN_LIGHT_VERTEX_UNSEEN 16u
-#define SUN_LIGHT_VERTEX_DEPTH_SHIFT 8
+#define SUN_LIGHT_VERTEX_DEPTH_SHIFT 8     // 8 bits
+#define SUN_LIGHT_VERTEX_PRESENCE_SHIFT 16 // where walks merge: 16 bits, all of them 1
 
 // Words of a grid's entry: the vertex' position, so that those out of reach need no look at the vertex, and its number.
 #define SUN_MAP_ENTRY_WORDS 4

@@ -73,6 +73,11 @@
 #define SUN_PHOTONS 0
 #endif
 
+// 1 where eye subpaths merge with the light subpaths of all pixels, beside joining their own.
+#ifndef SUN_MERGING
+#define SUN_MERGING 0
+#endif
+
 // 1 where the device has cl_khr_int64_base_atomics; otherwise the film adds two 32-bit words with carry.
 #ifndef SUN_ATOMICS_64
 #define SUN_ATOMICS_64 0

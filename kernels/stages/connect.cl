@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // connect: what a hit of an eye subpath adds to the film, by itself and joined with the light subpath of its sample, and where it goes next.
-//   reads    hits; light vertices; every column of the path; the walk; status
+//   reads    hits; light vertices, of the slot or (SUN_MERGING) of the map, where those of each path stand together; every column of the path; the walk; status
 //   writes   film; shadow rays; every column of the path; the walk; status
 //   queues   rays -> rays, shadow_rays (by bits of the status): a slot's rays stand at numbers 0, 1 ... without gaps
 //   holds    afterwards an eye subpath is alive with a ray to trace, or has ended with a reason, never both
@@ -10,6 +10,26 @@
 #include "transport/connect.h"
 #include "transport/emission.h"
 #include "transport/step.h"
+
+// The light subpath that belongs to each eye subpath: the records of its vertices.
+typedef struct OwnVertices {
+  uint_n first, step, count;
+} OwnVertices;
+
+SUN_FN OwnVertices own_vertices(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL uint *path_starts, const Walk *walk, uint_n slot, mask active) {
+  OwnVertices own;
+  if (SUN_MERGING) {
+    uint_n path = active ? walk->path - (uint_n)(1) : (uint_n)(0), begin = gather_uint(path_starts, path);
+    own.first = begin * (uint_n)(SUN_LIGHT_VERTEX_RECORDS);
+    own.step = (uint_n)(SUN_LIGHT_VERTEX_RECORDS);
+    own.count = gather_uint(path_starts, path + (uint_n)(1)) - begin;
+  } else {
+    own.first = light_vertex_record(frame->pool, slot, (uint_n)(0));
+    own.step = (uint_n)(frame->pool * SUN_LIGHT_VERTEX_RECORDS);
+    own.count = walk->vertices;
+  }
+  return own;
+}
 
 // Appends a ray to those of its slot.
 SUN_FN void append_ray(const Scene *scene, SUN_GLOBAL ShadowRay *shadow_rays, uint_n slot, const Path *path, vec3 throughput, const Connection *c, uint_n depth,
@@ -39,7 +59,7 @@ SUN_FN real run_into_weight(const SUN_GLOBAL Frame *frame, const Walk *walk, uin
 }
 
 SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *walks, const SUN_GLOBAL uint *light_vertices,
-                             SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts,
+                             const SUN_GLOBAL uint *path_starts, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts,
                              FilmWords film_words, uint first) {
   uint length = counts[SUN_COUNT_LIVE];
   if (first >= length) return;
@@ -120,10 +140,11 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       if (frame->emitter_count > 0 && ANY(joins)) {
         Connection c = connect_emitter(scene, &vertex, &there, sample_1d(&key, SUN_DIM_EMITTER(path.vertex)), sample_2d(&key, SUN_DIM_EMITTER_POINT(path.vertex)), joins);
         append_ray(scene, shadow_rays, lanes.slot, &path, throughput, &c, depth + one, 0, &shadows);
+        OwnVertices own = own_vertices(frame, path_starts, &walk, lanes.slot, joins);
         for (uint number = 0;; number++) {
-          mask some = joins & ((uint_n)(number) < walk.vertices);
+          mask some = joins & ((uint_n)(number) < own.count);
           if (!ANY(some)) break;
-          LightVertex y = light_vertex_load(light_vertices, light_vertex_record(frame->pool, lanes.slot, some ? (uint_n)(number) : zero));
+          LightVertex y = light_vertex_load(light_vertices, some ? own.first + (uint_n)(number) * own.step : zero);
           mask short_enough = some & (depth + y.depth + two <= (uint_n)(frame->max_depth));
           if (!ANY(short_enough)) continue;
           c = connect_vertices(scene, &vertex, &there, &y, short_enough);
@@ -137,9 +158,7 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       turned = scatters & !limited & scatter.valid & !scatter.straight;
       straight = straight | (scatters & scatter.valid & scatter.straight);
       throughput = select3(scatters & scatter.valid, mul3(throughput, scatter.weight), throughput);
-      walk.dVCM = turned ? left.dVCM : walk.dVCM;
-      walk.dVC = turned ? left.dVC : walk.dVC;
-      walk.far = walk.far & !turned;
+      weights_turn(&walk, &left, turned);
     }
     path_step(&path, &scatter, &hit, turned, straight);
     mask alive = turned | straight;
@@ -163,7 +182,7 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
 }
 
 SUN_KERNEL void connect(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *walks, const SUN_GLOBAL uint *light_vertices,
-                        SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts,
+                        const SUN_GLOBAL uint *path_starts, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts,
                         FilmWords film_words) {
-  connect_bundle(frame, SCENE_ARGUMENTS, path_words, walks, light_vertices, status, hits, shadow_rays, rays, counts, film_words, (uint)get_global_id(0) * LANES);
+  connect_bundle(frame, SCENE_ARGUMENTS, path_words, walks, light_vertices, path_starts, status, hits, shadow_rays, rays, counts, film_words, (uint)get_global_id(0) * LANES);
 }

@@ -78,6 +78,7 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       vertex.flux = mul3(throughput, walk.emitted);
       vertex.dVCM = arrived.dVCM;
       vertex.dVC = arrived.dVC;
+      vertex.dVM = arrived.dVM;
       vertex.depth = depth;
       vertex.material = surface.material;
       vertex.front = surface.front;
@@ -130,9 +131,7 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
         walk.holds = walk.holds | joined;
       }
       throughput = select3(turned | clear, mul3(throughput, scatter.weight), throughput);
-      walk.dVCM = turned ? left.dVCM : walk.dVCM;
-      walk.dVC = turned ? left.dVC : walk.dVC;
-      walk.far = walk.far & !turned;
+      weights_turn(&walk, &left, turned);
       walk.holds = walk.holds & !turned;
       walk.rough = walk.rough + ((turned & (scatter.pdf_solid_angle > 0.0f)) ? one : zero);
       vec3 absorbs;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // emit: begins walks. Slots that compact gave out begin the light subpath of a new sample; those whose light subpath has ended begin its eye subpath. In a light pass
-// there are light subpaths alone.
+// there are light subpaths alone, in an eye pass eye subpaths.
 //   reads    counts REFILL_*; the ray queue; status
 //   writes   every column of the path; the walk; status
 //   queues   the slots stand in `rays` already: compact counted them in
@@ -55,11 +55,11 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
   walk.path = turns ? walk.path : path_count + (uint_n)(1);
   walk.emitted = walk.absorption = splat3((real)(0.0f));
   walk.dVCM = heuristic_ratio(frame, subpaths * inverse_camera_pdf(frame, &scene->moment, camera_direction));
-  walk.dVC = (real)(0.0f);
+  walk.dVC = walk.dVM = (real)(0.0f);
   mask never = looks & !looks;
   walk.holds = walk.unseen = never;
   walk.far = frame->camera.kind == SUN_CAMERA_ORTHOGRAPHIC ? !never : never;
-  if (ANY(inside) && frame->emitter_count > 0 && frame->max_depth > 0) {
+  if (ANY(inside) && frame->emitter_count > 0 && frame->max_depth > 0 && !(frame->flags & SUN_FRAME_EYE_PASS)) {
     uint_n vertex = (uint_n)(SUN_LIGHT_VERTEX);
     Emission e = sample_emission(scene, sample_1d(&key, SUN_DIM_EMITTER(vertex)), sample_1d(&key, SUN_DIM_LOBE(vertex)), sample_2d(&key, SUN_DIM_EMITTER_POINT(vertex)),
                                  sample_2d(&key, SUN_DIM_DIRECTION(vertex)), inside);
@@ -79,6 +79,7 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
     walk.unseen = e.valid & e.pointed;
     walk.dVCM = e.valid ? e.dVCM : walk.dVCM;
     walk.dVC = e.valid ? e.dVC : walk.dVC;
+    walk.dVM = e.valid ? e.dVM : walk.dVM;
     walk.far = (e.valid & e.far) | (walk.far & !e.valid);
     begun = e.valid ? (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_LIGHT) : begun;
   }

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// gather: what photons around the hit of an eye path add to the film. The path itself is left to shade, which comes next.
-//   reads    hits; every column of the path; status; a light map
+// gather: what photons around the hit of an eye path add to the film. The path itself is left to shade (or connect), which comes next.
+//   reads    hits; every column of the path; the walk; status; a light map
 //   writes   film
 //   queues   rays
 //   holds    a path looks at each map once, at a surface that is not only sharp; a photon counts for the bounce that its scatterings, the path's and this one make
-//   source   [Jensen96] [Hachisuka09 eq. 4]; the kernel of [Epanechnikov69]
+//            (SUN_MERGING: at every surface, weighted against the strategies that join)
+//   source   [Jensen96] [Hachisuka09 eq. 4]; the kernel of [Epanechnikov69]; weights [Georgiev12 eq. 38, 39]
 #include "path/contribute.h"
 #include "path/queue.h"
+#include "transport/connect.h"
 #include "transport/light_map.h"
-#include "transport/light_vertex.h"
 #include "transport/photons.h"
 #include "transport/step.h"
 
-SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
-                            LIGHT_MAP_PARAMETERS, uint phase, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words, uint first) {
+SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *walks,
+                            const SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, LIGHT_MAP_PARAMETERS, uint phase, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words, uint first) {
   uint length = counts[SUN_COUNT_LIVE];
   if (first >= length) return;
   QueueLanes lanes = queue_lanes(rays, first, length);
@@ -44,12 +45,21 @@ SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, con
   side.normal = surface.normal;
   side.wo_local = to_local(&surface.shading, wo);
   Lobes lobes = bsdf_lobes(&bsdf, scene->tables, side.wo_local);
-  side.lobes = gathering_lobes(frame, &lobes);
-  mask blurred = gathers & blurred_facets(frame, &lobes);
+  side.lobes = SUN_MERGING ? lobes : gathering_lobes(frame, &lobes);
+  mask blurred = gathers & !gathers;
+  if (!SUN_MERGING) blurred = gathers & blurred_facets(frame, &lobes);
   Side facets = side;
   facets.lobes = lobes_part(&lobes, blurred, blurred & !blurred);
-  gathers = gathers & (has_lobes(&side.lobes) | blurred);
+  gathers = gathers & (SUN_MERGING ? !only_delta(&lobes) : has_lobes(&side.lobes) | blurred);
   if (!ANY(gathers)) return;
+  Walk walk;
+  EyeVertex vertex;
+  if (SUN_MERGING) {
+    walk = walk_load(walks, lanes.slot);
+    weights_arrive(frame, &walk, hit.t, surface.cos_front);
+    vertex.at = meeting_of(&surface, &bsdf);
+    vertex.wo = wo;
+  }
 
   // Sums by the photons' depth, as each bounce is rounded by itself.
   float sums[SUN_MOST_BIDIRECTIONAL_DEPTH][3][LANES];
@@ -73,6 +83,11 @@ SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, con
     if (ANY(unseen)) eval.f_cos = add3(eval.f_cos, select3(unseen, side_eval(scene, &facets, photon.to_light).f_cos, splat3((real)(0.0f))));
     // f cos counts the shading normals' cosine, flux the true one: both walks see the same surface, see transport/both_ways.h.
     real weight = (1.0f - dot3(to, to) / (map.radius * map.radius)) / max_real(fabs(dot3(photon.to_light, photon.at.normal)), (real)(SUN_LEAST_COSINE)) / photon.presence;
+    if (SUN_MERGING) {
+      real from_light = earlier_than_merging(frame, photon.dVCM, photon.dVM, eval.pdf);
+      real from_eye = earlier_than_merging(frame, walk.dVCM, walk.dVM, eye_reverse_pdf(scene, &vertex, photon.to_light));
+      weight = weight / (1.0f + from_light + from_eye);
+    }
     vec3 light = scale3(mul3(eval.f_cos, photon.flux), weight);
     light = select3(some, light, splat3((real)(0.0f)));
     float rgb[3][LANES];
@@ -98,7 +113,7 @@ SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, con
   }
 }
 
-SUN_KERNEL void gather(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
-                       LIGHT_MAP_PARAMETERS, uint phase, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
-  gather_bundle(frame, SCENE_ARGUMENTS, path_words, status, hits, LIGHT_MAP_ARGUMENTS, phase, rays, counts, film_words, (uint)get_global_id(0) * LANES);
+SUN_KERNEL void gather(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *walks,
+                       const SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, LIGHT_MAP_PARAMETERS, uint phase, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words) {
+  gather_bundle(frame, SCENE_ARGUMENTS, path_words, walks, status, hits, LIGHT_MAP_ARGUMENTS, phase, rays, counts, film_words, (uint)get_global_id(0) * LANES);
 }

@@ -14,9 +14,7 @@
 #endif
 #include "transport/direct.h"
 #include "transport/emission.h"
-#if SUN_PHOTONS
 #include "transport/photons.h"
-#endif
 #include "transport/scatter.h"
 
 SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, mask stored, const DirectSample *direct, vec3 worth, const Path *path,

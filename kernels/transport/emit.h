@@ -10,7 +10,7 @@ SUN_NAMESPACE_BEGIN
 typedef struct Emission {
   vec3 origin, direction;
   vec3 flux;         // radiance times cosine over the density of place and direction
-  real dVCM, dVC;    // [Georgiev12 eq. 31, 32], without what waits for the first hit
+  real dVCM, dVC, dVM;  // [Georgiev12 eq. 31, 32], without what waits for the first hit
   mask pointed;      // from a light without extent
   mask far;          // from infinitely far: a disk across the scene stands for it
   mask valid;
@@ -88,6 +88,7 @@ SUN_FN Emission sample_emission(const Scene *scene, real u_choice, real u_side, 
   }
   e.dVCM = heuristic_ratio(frame, 1.0f / trace_over_direct);
   e.dVC = heuristic_ratio(frame, cosine / trace);
+  e.dVM = SUN_MERGING ? e.dVC / merging_ratio(frame) : zero;
   e.valid = active & (max_of3(e.flux) > 0.0f);
   return e;
 }

@@ -12,7 +12,7 @@ typedef struct LightVertex {
   Meeting at;
   vec3 to_light;     // unit length, back along the subpath
   vec3 flux;         // that arrives
-  real dVCM, dVC;
+  real dVCM, dVC, dVM;
   uint_n depth;      // scatterings before it
   uint_n material;   // whose solid absorbs what leaves on its inner side
   mask front;        // found from the front
@@ -29,10 +29,12 @@ SUN_FN void light_vertex_store(SUN_GLOBAL uint *vertices, uint_n record, mask st
   uint_n one = (uint_n)(1), zero = (uint_n)(0);
   uint_n flags = (b->solid ? one : zero) | (b->specular ? one << (uint_n)(1) : zero) | (v->front ? one << (uint_n)(2) : zero) |
                  (v->unseen ? (uint_n)(SUN_LIGHT_VERTEX_UNSEEN) : zero) | (v->caustic ? (uint_n)(SUN_LIGHT_VERTEX_CAUSTIC) : zero) | (v->depth << (uint_n)(SUN_LIGHT_VERTEX_DEPTH_SHIFT));
+  // Rounded up, so never 0.
+  if (SUN_MERGING) flags = flags | (uint_of_int(int_of_real(65535.0f - floor(65535.0f * (1.0f - v->presence)))) << (uint_n)(SUN_LIGHT_VERTEX_PRESENCE_SHIFT));
   uint_n arrives[16] = {bits_of_real(v->at.position.x), bits_of_real(v->at.position.y), bits_of_real(v->at.position.z), flags,
                         bits_of_real(v->at.normal.x),   bits_of_real(v->at.normal.y),   bits_of_real(v->at.normal.z),   bits_of_real(v->dVCM),
                         bits_of_real(v->flux.x),        bits_of_real(v->flux.y),        bits_of_real(v->flux.z),        bits_of_real(v->dVC),
-                        bits_of_real(v->to_light.x),    bits_of_real(v->to_light.y),    bits_of_real(v->to_light.z),    bits_of_real(v->presence)};
+                        bits_of_real(v->to_light.x),    bits_of_real(v->to_light.y),    bits_of_real(v->to_light.z),    bits_of_real(SUN_MERGING ? v->dVM : v->presence)};
   uint_n leaves[16] = {bits_of_real(b->base.x),       bits_of_real(b->base.y),       bits_of_real(b->base.z),       bits_of_real(b->metallic),
                        bits_of_real(b->f0.x),         bits_of_real(b->f0.y),         bits_of_real(b->f0.z),         bits_of_real(b->f90),
                        bits_of_real(v->at.unbent.x),  bits_of_real(v->at.unbent.y),  bits_of_real(v->at.unbent.z),  bits_of_real(b->transmission),
@@ -53,14 +55,16 @@ SUN_FN LightVertex light_vertex_arrival(const SUN_GLOBAL uint *vertices, uint_n 
   v.flux = make_vec3(real_of_bits(w[8]), real_of_bits(w[9]), real_of_bits(w[10]));
   v.dVC = real_of_bits(w[11]);
   v.to_light = make_vec3(real_of_bits(w[12]), real_of_bits(w[13]), real_of_bits(w[14]));
-  v.presence = real_of_bits(w[15]);
+  // Where walks merge the first record has no word left for it: what it has to say is said in 16 bits.
+  v.presence = SUN_MERGING ? real_of_uint(flags >> (uint_n)(SUN_LIGHT_VERTEX_PRESENCE_SHIFT)) * (1.0f / 65535.0f) : real_of_bits(w[15]);
+  v.dVM = real_of_bits(w[15]);
   v.at.bsdf.solid = (flags & (uint_n)(1)) != zero;
   v.at.bsdf.specular = (flags & (uint_n)(2)) != zero;
   v.front = (flags & (uint_n)(4)) != zero;
   v.caustic = (flags & (uint_n)(SUN_LIGHT_VERTEX_CAUSTIC)) != zero;
   v.unseen = (flags & (uint_n)(SUN_LIGHT_VERTEX_UNSEEN)) != zero;
   v.at.bsdf.inside = v.at.bsdf.solid & !v.front;
-  v.depth = flags >> (uint_n)(SUN_LIGHT_VERTEX_DEPTH_SHIFT);
+  v.depth = (flags >> (uint_n)(SUN_LIGHT_VERTEX_DEPTH_SHIFT)) & (uint_n)(0xff);
   return v;
 }
 

@@ -27,6 +27,7 @@ interpret branching "$root/scenes/cornell/cornell.gltf" --size 8x8 --spp 1 --max
 interpret bdpt "$root/scenes/first-picture/first-picture.glb" --integrator bdpt --size 8x8 --spp 1 --max-depth 2 --aov all
 interpret sppm "$root/scenes/first-picture/first-picture.glb" --integrator sppm --size 8x8 --spp 2 --max-depth 3 --photons 60 --radius 1 --aov all
 interpret photon "$root/scenes/first-picture/first-picture.glb" --integrator photon --size 8x8 --spp 1 --max-depth 3 --photons 60 --radius 1
+interpret vcm "$root/scenes/first-picture/first-picture.glb" --integrator vcm --size 8x8 --spp 1 --max-depth 2 --aov all
 interpret shapes "$root/scenes/whitted/whitted.gltf" --size 8x8 --spp 1 --max-depth 2 --env 0.3,0.5,0.8
 interpret whitted "$root/scenes/whitted/whitted.gltf" --size 8x8 --spp 1 --max-depth 3 --integrator whitted --env 0.3,0.5,0.8 --ambient 0.1,0.1,0.1
 interpret motion "$root/scenes/cook/cook.gltf" --size 8x8 --spp 1 --max-depth 2 --time-at 0 --shutter 0.25
