@@ -190,6 +190,17 @@ TEST(Bdpt, SolidsThatAbsorb) {
   expect_agreement(Case(std::move(scene)), picture(24, 16, 5), {64, 64});
 }
 
+// Eye and floor within a block of glass, and a lamp outside: light that was bent once is met by either walk, and solid angles that are squeezed on the way do not come out even.
+TEST(Bdpt, WithinGlass) {
+  Scene scene;
+  add(scene, box({-2, -0.5f, -2}, {2, 1, 2}), glass({0, 0, 0}));
+  add(scene, quad({0, 0, 0}, {1.5f, 0, 0}, {0, 0, -1.5f}), matt({0.7f, 0.6f, 0.5f}));
+  add(scene, quad({0, 0.9f, -0.8f}, {0.3f, 0, 0}, {0, 0, 0.3f}), lamp({1, 1, 1}));
+  add(scene, quad({0, 1.3f, 0}, {1.5f, 0, 0}, {0, 0, 1.5f}), lamp({2, 3, 4}));
+  add_camera(scene, {0, 0.8f, 1.4f}, {0, 0, -0.2f}, 50);
+  expect_agreement(Case(std::move(scene)), picture(16, 12, 3), {96, 64}, "path");
+}
+
 // Triangles of one side: the eye looks into the room from behind its wall, the sky does not shine through it, and what stands behind the wall is lit from within.
 TEST(Bdpt, SurfacesOfOneSide) {
   Scene scene;
