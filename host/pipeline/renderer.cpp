@@ -243,11 +243,11 @@ void Renderer::State::take_counts(std::vector<kernel::uint> now) {
   seen = std::move(now);
 }
 
-// What is left to the program: as many photons as the picture has pixels, and a radius within which there are about ten of each path's vertices.
+// What is left to the program: as many photons as the picture has pixels, and a radius within which there are about ten of them, or one where walks are joined, too.
 void Renderer::State::resolve_photons() {
   if (plan.light_walk.empty()) return;
   constexpr std::uint32_t least = 1u << 10, most = 1u << 20, once = 500000;
-  constexpr double spread = 4;
+  const double spread = plan.photons ? 4 : 1;
   if (!plan.photons) frame.light_paths = frame.width * frame.height;  // each eye path has one of its own
   else if (settings.photons == 0) settings.photons = plan.map_once ? once : std::clamp(frame.width * frame.height, least, most);
   if (plan.photons) frame.light_paths = settings.photons;

@@ -78,11 +78,11 @@ TEST(Vcm, WeightsAddUpToOne) {
     constexpr float radius = 0.06f;
     RenderSettings s = vcm(32, 32, 4, radius);
     s.balance = balance;
-    const std::vector<Film> films = render_seeds(Case(round_furnace()), s, 32, seeds);
+    const std::vector<Film> films = render_seeds(Case(round_furnace()), s, 32, 2 * seeds);
     for (int depth = 0; depth <= 4; depth++) {
       const std::string layer = "bounce." + std::to_string(depth);
       // Normals turn within the disk, by the square of its size.
-      EXPECT_EQ(differs(films, layer, whole(films[0]), {1, 1, 1}, 1e-4 + 0.3 * static_cast<double>(radius * radius)), "");
+      EXPECT_EQ(differs(films, layer, whole(films[0]), {1, 1, 1}, 1e-4 + 0.2 * static_cast<double>(radius * radius)), "");
       EXPECT_LT(relative_error(films, layer), 0.0015) << layer;
     }
   }
