@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "base/error.h"
 #include "scene/validate.h"
@@ -114,20 +115,28 @@ TEST(Shapes, CameraInsideAGlassBall) {
   EXPECT_EQ(differs(films, "beauty", whole(films[0]), glm::vec3(2.25f) * glm::vec3(1, 0.5f, 0.25f), 1e-4), "");
 }
 
-// A spherical lamp of radius r at height h above a matt floor: irradiance straight below is pi L (r / h)^2, by shadow rays and by chance.
-TEST(Shapes, ASphericalLampOverAPlane) {
-  for (const char *integrator : {"path", "hybrid", "pure"}) {
-    Scene scene;
-    add_shape(scene, Kind::plane, matt({0.5f, 0.5f, 0.5f}), glm::mat4x3(1));
-    add_shape(scene, Kind::sphere, lamp({4, 2, 1}), scaled({0.5f, 0.5f, 0.5f}, {0, 1, 0}));
-    add_camera(scene, {0.02f, 0.45f, 0}, {0.02f, 0, 0.001f}, 0.5f);
-    const Case made(std::move(scene));
-    RenderSettings s = picture(4, 4, 1);
-    s.integrator = integrator;
-    s.filter = box_filter();
-    const std::vector<Film> films = render_seeds(made, s, 1024, 16);
-    EXPECT_EQ(differs(films, "bounce.1", whole(films[0]), glm::vec3(0.5f * 0.25f) * glm::vec3(4, 2, 1), 2e-3), "") << integrator;
-  }
+// Lamps above a matt floor, seen from straight below at distance h: the share of the half space that each takes, by the cosine. A sphere of radius r takes (r / h)^2 to its
+// centre, a disk r^2 / (r^2 + h^2), a rectangle four times what a corner of it takes. By shadow rays and by chance.
+TEST(Shapes, LampsOverAPlane) {
+  constexpr float r = 0.6f, a = 0.5f, b = 0.8f;  // h is 1
+  const auto corner = [](double x, double y) { return x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)); };
+  const std::tuple<Kind, glm::vec3, double> lamps[] = {{Kind::sphere, {r, r, r}, r * r}, {Kind::disk, {r, r, r}, r * r / (r * r + 1)},
+                                                       {Kind::quad, {a, 1, b}, 2 / M_PI * (corner(a, b) + corner(b, a))}};
+  for (const auto &[kind, scale, share] : lamps)
+    for (const char *integrator : {"path", "hybrid", "pure", "bdpt"}) {
+      Scene scene;
+      add_shape(scene, Kind::plane, matt({0.5f, 0.5f, 0.5f}), glm::mat4x3(1));
+      add_shape(scene, kind, lamp({4, 2, 1}), turned(scale, static_cast<float>(M_PI), {0, 1, 0}));
+      add_camera(scene, {0.002f, 0.35f, 0}, {0.002f, 0, 0.001f}, 0.5f);
+      const Case made(std::move(scene));
+      RenderSettings s = picture(4, 4, 1);
+      s.integrator = integrator;
+      s.filter = box_filter();
+      const std::vector<Film> films = render_seeds(made, s, 512, 64);
+      EXPECT_EQ(differs(films, "bounce.1", whole(films[0]), glm::vec3(0.5f * static_cast<float>(share)) * glm::vec3(4, 2, 1), 1e-3), "") << integrator << ", shape " << static_cast<int>(kind);
+      const Moments m = moments(means(films, "bounce.1", whole(films[0]), 1));
+      EXPECT_LT(interval(m, 1e-9), 0.04 * m.mean) << integrator << ", shape " << static_cast<int>(kind) << " is too noisy to tell";
+    }
 }
 
 // Shadow rays leave a plane and reach a lamp that touches it; a far plane that the camera grazes casts no shadow on itself.
