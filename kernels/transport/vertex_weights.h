@@ -23,7 +23,7 @@ SUN_FN real heuristic_ratio(const SUN_GLOBAL Frame *frame, real ratio) {
   return r < SUN_LARGEST_RATIO ? r : (real)(SUN_LARGEST_RATIO);
 }
 
-// How much denser merging in a vertex is than joining it: the number of light subpaths times the disk's area [Georgiev12 eq. 29, etaVCM].
+// How much denser merging in a vertex is than joining it: the number of light subpaths times the disk's area [Georgiev12 eq. 20, etaVCM].
 SUN_FN real merging_ratio(const SUN_GLOBAL Frame *frame) { return heuristic_ratio(frame, (real)(frame->merges)); }
 
 // All strategies that would stop earlier than the last vertex, over the walk's own, once the density of the way here is known: times that it is a walk's half of a weight.

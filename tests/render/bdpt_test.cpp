@@ -190,7 +190,7 @@ TEST(Bdpt, SolidsThatAbsorb) {
   expect_agreement(Case(std::move(scene)), picture(24, 16, 5), {64, 64});
 }
 
-// Eye and floor within a block of glass, and a lamp outside: light that was bent once is met by either walk, and solid angles that are squeezed on the way do not come out even.
+// Eye and floor within a block of glass, a lamp there and one outside: light that was bent once is met by either walk.
 TEST(Bdpt, WithinGlass) {
   Scene scene;
   add(scene, box({-2, -0.5f, -2}, {2, 1, 2}), glass({0, 0, 0}));
