@@ -30,7 +30,7 @@ constexpr Expected expected[] = {{"path", "a8ee87ddcdd458350ad1642736044e05"},
                                  {"bdpt", "2e9272f8fdef287e5a2cf366e2010a5b"},
                                  {"sppm", "d377f0227202210312757a06055e1d82"},
                                  {"photon", "e25f3ed8dd8298601023be03714ded82"},
-                                 {"vcm", "0"}};
+                                 {"vcm", "74f893d1815cb389e08a740517609501"}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 

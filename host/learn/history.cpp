@@ -18,9 +18,13 @@ constexpr Chapter chapters[] = {
     {"distribution", "Cook, Porter, Carpenter 1984", "Rays spread over the lamp: soft shadows. Light between matt walls is left out still, so what the lamp does not see is black."},
     {"pure", "Kajiya 1986", "All light, by one integral, and nothing known of where the lamp is: a path has to run into it."},
     {"path", "Kajiya 1986, Veach & Guibas 1995", "The same integral with shadow rays, weighted. Light that glass has gathered still is found by chance alone, so there are bright specks."},
-    {"bdpt", "Lafortune & Willems 1993, Veach & Guibas 1995", "Paths from the lamp as well: the caustic is smooth. What the mirror shows of it is not."},
+    {"bdpt", "Lafortune & Willems 1993, Veach & Guibas 1995", "Paths from the lamp as well: the caustic is smooth. What the mirror and the glass show of it is not."},
+    {"photon", "Jensen 1995, 1996", "Photons are kept where they land and looked up: the caustic is smooth, and so is what mirrors show of it; a little blurred, whatever the time."},
+    {"sppm", "Hachisuka & Jensen 2009", "Photons in ever smaller disks: the blur goes as well."},
+    {"vcm", "Georgiev, Křivánek, Davidovič & Slusallek 2012", "Photons as one more strategy of the bidirectional kind, weighted with the others."},
 };
 
+constexpr const char *reference_by = "vcm";
 constexpr const char *lamp_scene = "cornell-caustic/cornell-caustic.gltf", *spot_scene = "cornell-caustic/spot-lamp.gltf";
 constexpr unsigned deepest = 10;
 
@@ -29,7 +33,7 @@ constexpr unsigned deepest = 10;
 std::string draw_history(Easel &easel) {
   const double seconds = easel.size(8.0, 0.05), count = static_cast<double>(std::size(chapters));
   const int side = easel.size(192, 16);
-  RenderSettings settings = figure_settings(side, side, "bdpt", deepest);
+  RenderSettings settings = figure_settings(side, side, reference_by, deepest);
   settings.layers.bounces = false;
   settings.seed = 1000;  // of no contestant
   Image reference;
@@ -77,7 +81,7 @@ std::string draw_history(Easel &easel) {
   page.heading("What was measured");
   page.table(table);
   page.text(finding);
-  page.text(fmt::format("Seconds are of rendering alone, kernels compiled and warm. The reference is `bdpt` with {} s and another seed; it has noise of its own, most of it where the mirror shows the caustic, and that is in each figure.", show_number(easel.size(10 * seconds, 0.5), 2)));
+  page.text(fmt::format("Seconds are of rendering alone, kernels compiled and warm. The reference is `{}` with {} s and another seed, whose disks have become small by then; what noise and blur it has is in each figure.", reference_by, show_number(easel.size(10 * seconds, 0.5), 2)));
   page.command(fmt::format("sunstone render scenes/{} --integrator bdpt --size {}x{} --filter box --max-depth {} --time {} -o bdpt.png", lamp_scene, side, side, deepest, seconds));
   page.write(easel.file("history.html"));
   return finding;
