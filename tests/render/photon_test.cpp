@@ -260,16 +260,17 @@ TEST(Photons, CausticsOfAPointLight) {
   s.integrator = "path";
   EXPECT_LT(mean_of(render_seeds(scene, s, 16, seeds), "bounce.3", whole(reference[0]), 1).value, 0.3 * caustic) << "the rest is the floor, seen through the ball";
   const auto check = [&](const std::vector<Film> &films) {
-    for (const char *layer : {"bounce.1", "bounce.2", "bounce.3", "bounce.4"})
+    // Of four scatterings photons see more than bdpt can: what the ball mirrors onto the floor, through the ball.
+    for (const char *layer : {"bounce.1", "bounce.2", "bounce.3"})
       for (const Window &w : {whole(films[0]), Window{8, 4, 16, 12}})
         for (int channel = 0; channel < 3; channel++) {
           const Mean a = mean_of(films, layer, w, channel), b = mean_of(reference, layer, w, channel);
           EXPECT_NEAR(a.value, b.value, standard_errors * std::hypot(a.error, b.error) + 0.02 * b.value) << layer << ", channel " << channel;
         }
     const Mean m = mean_of(films, "bounce.3", whole(films[0]), 1);
-    EXPECT_LT(m.error, 0.025 * m.value);
+    EXPECT_LT(m.error, 0.035 * m.value) << "too noisy to tell";
   };
-  check(render_seeds(scene, sppm(s, 4096, 0.03f), 96, seeds));
+  check(render_seeds(scene, sppm(s, 4096, 0.03f), 144, seeds));
   check(render_seeds(scene, photon(s, 200000, 0.06f, 0.03f), 256, seeds));
 }
 
@@ -281,8 +282,8 @@ TEST(Photons, CausticsOfALamp) {
   const Case made(std::move(scene));
   RenderSettings s = picture(24, 16, 4);
   s.integrator = "bdpt";
-  const std::vector<Film> reference = render_seeds(made, s, 96, seeds);
-  expect_close(render_seeds(made, sppm(s, 4096, 0.04f), 48, seeds), reference, 4, 0.04, 0.03);
+  const std::vector<Film> reference = render_seeds(made, s, 240, seeds);
+  expect_close(render_seeds(made, sppm(s, 4096, 0.04f), 96, seeds), reference, 4, 0.04, 0.03);
   expect_close(render_seeds(made, photon(s, 100000, 0.06f, 0.04f), 96, seeds), reference, 4, 0.04, 0.03);
 }
 
