@@ -80,6 +80,7 @@ struct Renderer::State {
   State(const Device &d, const Programs &p, const Plan &pl, const RenderSettings &s) : device(d), programs(p), plan(pl), settings(s) {}
   void name_layers();
   void place_tile(const Tile &tile);
+  void begin_film(const Tile &tile);
   void take_counts(std::vector<kernel::uint> now);
   void resolve_photons();
   float radius_of(std::uint64_t iteration);
@@ -343,10 +344,16 @@ void Renderer::State::place_tile(const Tile &tile) {
   frame.paths_per_sample = static_cast<kernel::uint>(tile.paths_per_sample());
 }
 
-std::uint64_t Renderer::State::render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
-                                           const std::function<bool(const RenderProgress &)> &progress) {
+// An empty one. Light subpaths that reach the lens light it while their map is made: a map of before would leave that out.
+void Renderer::State::begin_film(const Tile &tile) {
   place_tile(tile);
   device_film.fill_zero();
+  if (plan.bidirectional) mapped.reset();
+}
+
+std::uint64_t Renderer::State::render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
+                                           const std::function<bool(const RenderProgress &)> &progress) {
+  begin_film(tile);
   StageRunner runner(programs, scene, *pool, device_frame, device_film);
   const bool mapped_each = map && !plan.map_once;
   const std::uint64_t at_once = mapped_each ? 1 : std::max<std::uint64_t>(1, max_paths_of_a_launch / tile.paths_per_sample());
@@ -412,6 +419,7 @@ void Renderer::warm_up(const CompileProgress &progress) {
   std::vector<Stage> stages = s.plan.light_walk;
   stages.insert(stages.end(), s.walk.begin(), s.walk.end());
   if (s.map) {
+    s.mapped.reset();
     s.map->begin(1);
     s.map->build(s.all, s.settings.radius, 0);
     runner.look_at(*s.map, s.all, s.plan.map_once ? &s.all : nullptr);
@@ -431,8 +439,7 @@ struct StageProbe::State {
 
 StageProbe::StageProbe(Renderer &renderer, SampleRange samples) : state_(new State{*renderer.state_, nullptr}) {
   Renderer::State &r = state_->render;
-  r.place_tile(r.tiles[0]);
-  r.device_film.fill_zero();
+  r.begin_film(r.tiles[0]);
   state_->runner = std::make_unique<StageRunner>(r.programs, r.scene, *r.pool, r.device_frame, r.device_film);
   r.look_at_light(*state_->runner, samples.first);
   r.frame.sample_first = static_cast<kernel::uint>(samples.first);

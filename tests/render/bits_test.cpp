@@ -2,6 +2,7 @@
 // One film hash, whatever the ways: how the work is cut, ordered, laid out or interrupted never changes a bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "support/render.h"
@@ -65,6 +66,18 @@ TEST(Bits, TheSceneShowsWhatItIsMadeOf) {
 }
 
 TEST(Bits, TwiceInARow) { expect_same(render(scene(), settings(), samples).film, "again"); }
+
+// What a renderer keeps of a sample, such as a map of its light, must not leave anything out of the next film.
+TEST(Bits, TwiceByOneRenderer) {
+  for (const char *name : {"path", "bdpt", "sppm", "photon", "vcm"}) {
+    RenderSettings s = picture(24, 16, 4);
+    s.integrator = name;
+    s.layers.albedo = true;
+    const auto films = render_twice(scene(), s, 0);
+    EXPECT_EQ(films[0] == films[1], true) << name;
+    EXPECT_GT(std::ranges::count_if(films[0], [](std::int64_t value) { return value != 0; }), 24 * 16) << name << ": the film is empty";
+  }
+}
 
 TEST(Bits, AnotherSeedIsAnotherPicture) {
   RenderSettings other = settings();

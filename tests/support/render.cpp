@@ -49,6 +49,12 @@ Variant variant_of(const Case &scene, const RenderSettings &settings, const Ways
   return v;
 }
 
+Renderer renderer_of(const Case &scene, const RenderSettings &settings, const Ways &ways) {
+  const Variant variant = variant_of(scene, settings, ways);
+  const FlatScene &flat = scene.flat(variant.layout);
+  return {test_device(ways.work_group), programs_for(variant, ways.work_group), flat, scene.camera(settings.width, settings.height), settings, Tuning{ways.pool, variant.lanes}};
+}
+
 }  // namespace
 
 const Device &test_device(std::size_t work_group) {
@@ -101,11 +107,24 @@ RenderSettings picture(int width, int height, unsigned max_depth) {
 Filter box_filter() { return {Filter::Kind::box, 0.5f}; }
 
 Rendered render(const Case &scene, const RenderSettings &settings, SampleRange samples, const Ways &ways, const std::function<bool(const RenderProgress &)> &progress) {
-  const Variant variant = variant_of(scene, settings, ways);
-  const FlatScene &flat = scene.flat(variant.layout);
-  Renderer renderer(test_device(ways.work_group), programs_for(variant, ways.work_group), flat, scene.camera(settings.width, settings.height), settings, Tuning{ways.pool, variant.lanes});
+  Renderer renderer = renderer_of(scene, settings, ways);
   renderer.render(samples, progress);
   return {renderer.film(), renderer.counts()};
+}
+
+std::array<std::vector<std::int64_t>, 2> render_twice(const Case &scene, const RenderSettings &settings, std::uint64_t sample) {
+  Renderer renderer = renderer_of(scene, settings, {});
+  const SampleRange alone{sample, sample + 1};
+  renderer.render(alone, {});
+  std::vector<std::int64_t> first;
+  for (const FilmLayer &layer : renderer.film().layers) first.insert(first.end(), layer.values.begin(), layer.values.end());
+  StageProbe again = renderer.probe(alone);
+  std::vector<kernel::uint> counts;
+  do {
+    again.warm_up(1);
+    counts = again.save().counts;
+  } while (counts[SUN_COUNT_LIVE] != 0 || counts[SUN_COUNT_NEXT_PATH] < counts[SUN_COUNT_PATHS]);
+  return {first, again.film()};
 }
 
 std::vector<Film> render_seeds(const Case &scene, RenderSettings settings, std::uint64_t samples, std::uint32_t seeds, const Ways &ways) {

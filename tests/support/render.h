@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rendering from a test: a scene, settings, and ways that may not change a bit.
 #pragma once
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -52,6 +53,9 @@ Filter box_filter();
 
 Rendered render(const Case &scene, const RenderSettings &settings, SampleRange samples, const Ways &ways = {},
                 const std::function<bool(const RenderProgress &)> &progress = {});
+
+// A sample, twice by one renderer and each time into a new film: the integers of both, layer by layer.
+std::array<std::vector<std::int64_t>, 2> render_twice(const Case &scene, const RenderSettings &settings, std::uint64_t sample);
 
 // One film a seed, from 1 on, with the independent sampler.
 std::vector<Film> render_seeds(const Case &scene, RenderSettings settings, std::uint64_t samples, std::uint32_t seeds, const Ways &ways = {});
