@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "flatten/alias_table.h"
 #include "flatten/environment.h"
-#include "flatten/geometry.h"
+#include "flatten/placement.h"
 #include "flatten/textures.h"
 #include "flatten/weld.h"
 #include "math/elementary.h"

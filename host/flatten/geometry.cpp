@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "flatten/materials.h"
+#include "flatten/placement.h"
+#include "flatten/shapes.h"
 #include "flatten/weld.h"
 #include "math/vector.h"
 
@@ -19,39 +21,6 @@ using kernel::uint;
 
 constexpr std::size_t small_mesh = 4096;                   // triangles of all copies of a mesh together
 constexpr std::size_t exact_boxes = std::size_t(1) << 26;  // vertices that are transformed, at most, for the boxes of one mesh's instances
-constexpr float farthest = 1e18f;                          // of a coordinate: squares stay finite
-
-// A transform, and what follows of it.
-struct Placement {
-  float m[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row major
-  double normal[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};      // inverse transpose, but for a positive factor
-  double determinant = 1;
-  bool mirrored() const { return determinant < 0; }
-};
-
-Placement placement_of(const glm::mat4x3 &transform) {
-  Placement p;
-  for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 4; column++) p.m[4 * row + column] = transform[column][row];
-  const auto at = [&](int row, int column) { return static_cast<double>(p.m[4 * (row % 3) + column % 3]); };
-  double cofactor[9];
-  for (int r = 0; r < 3; r++)
-    for (int c = 0; c < 3; c++) cofactor[3 * r + c] = at(r + 1, c + 1) * at(r + 2, c + 2) - at(r + 1, c + 2) * at(r + 2, c + 1);
-  p.determinant = at(0, 0) * cofactor[0] + at(0, 1) * cofactor[1] + at(0, 2) * cofactor[2];
-  for (int i = 0; i < 9; i++) p.normal[i] = p.determinant < 0 ? -cofactor[i] : cofactor[i];
-  return p;
-}
-
-// ((x + y) + z) + offset, in float.
-glm::vec3 apply(const float *m, float x, float y, float z) {
-  const auto row = [&](const float *r) { return ((r[0] * x + r[1] * y) + r[2] * z) + r[3]; };
-  return {row(m), row(m + 4), row(m + 8)};
-}
-
-glm::dvec3 apply_linear(const double *m, const glm::vec3 &v) {
-  const auto row = [&](const double *r) { return (r[0] * v.x + r[1] * v.y) + r[2] * v.z; };
-  return {row(m), row(m + 3), row(m + 6)};
-}
 
 // A primitive as it goes into the arrays once: in world space for one baked instance, or in its mesh's space.
 struct Part {
@@ -103,6 +72,11 @@ class TangentsAlong {
   std::vector<std::size_t> triangle_;
 };
 
+glm::dvec3 apply_linear(const double *m, const glm::vec3 &v) {
+  const auto row = [&](const double *r) { return (r[0] * v.x + r[1] * v.y) + r[2] * v.z; };
+  return {row(m), row(m + 3), row(m + 6)};
+}
+
 // Those of the shutter's key `key`, so many vertices behind those of key 0.
 void write_vertices(const Part &part, FlatScene &flat, bool extras, std::size_t key) {
   const Primitive &primitive = *part.primitive;
@@ -118,7 +92,7 @@ void write_vertices(const Part &part, FlatScene &flat, bool extras, std::size_t 
   for (std::size_t i = 0; i < welded.source.size(); i++) {
     const std::uint32_t source = welded.source[i];
     const glm::vec3 &local = positions[source];
-    const glm::vec3 position = apply(p.m, local.x, local.y, local.z);
+    const glm::vec3 position = transform_point(p.m, local.x, local.y, local.z);
     const glm::vec3 own = later && !flat_faces ? later->normals[source] : welded.normals[i];
     const glm::vec3 normal = flat_faces ? glm::vec3(0) : unit_vector(apply_linear(p.normal, own));
     kernel::Vertex vertex{};
@@ -161,11 +135,6 @@ bool kept(const FlatScene &flat, const Part &part, std::size_t triangle) {
       if (!(std::fabs(corner[k][c]) <= farthest)) return false;
   }
   return !part.primitive->keys.empty() || triangle_cross(corner[0], corner[1], corner[2]) != glm::dvec3(0);
-}
-
-// Is what has this material passed by rays that see it from behind?
-bool single_sided(const kernel::Material &material) {
-  return !(material.flags & (SUN_MATERIAL_DOUBLE_SIDED | SUN_MATERIAL_VOLUME)) && !(material.transmission > 0);
 }
 
 void write_triangles(const Part &part, FlatScene &flat) {
@@ -224,12 +193,12 @@ Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &lo
       for (uint v : flat.triangles[t].vertex)
         for (std::size_t key = first; key <= (range.deforms ? last : first); key++) {
           const float *p = position_at(flat, range, v, key);
-          include(apply(m, p[0], p[1], p[2]));
+          include(transform_point(m, p[0], p[1], p[2]));
         }
   } else {
     // Rounding is monotone, so the corners' transforms bound every vertex's.
     for (int corner = 0; corner < 8; corner++)
-      include(apply(m, corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
+      include(transform_point(m, corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
                     corner & 4 ? local.upper.z : local.lower.z));
   }
   for (int r = 0; r < 3; r++) {
@@ -240,56 +209,6 @@ Bounds world_box(const FlatScene &flat, const MeshRange &range, const Bounds &lo
     box.upper[r] += pad;
   }
   return box;
-}
-
-void include_box(Bounds &box, const Bounds &other) {
-  for (int c = 0; c < 3; c++) {
-    box.lower[c] = std::min(box.lower[c], other.lower[c]);
-    box.upper[c] = std::max(box.upper[c], other.upper[c]);
-  }
-}
-
-// Keys of one transform: none where it does not move.
-std::vector<kernel::InstanceKey> keys_of(const glm::mat4x3 &transform, const std::vector<glm::mat4x3> &later) {
-  std::vector<kernel::InstanceKey> keys;
-  if (later.empty()) return keys;
-  const auto add = [&](const glm::mat4x3 &m) {
-    kernel::InstanceKey key;
-    const Placement p = placement_of(m);
-    std::copy(std::begin(p.m), std::end(p.m), key.to_world);
-    keys.push_back(key);
-  };
-  add(transform);
-  for (const glm::mat4x3 &m : later) add(m);
-  return keys;
-}
-
-// Enters the keys of an instance that moves, and marks it. Its to_object is not used.
-void take_keys(const std::vector<kernel::InstanceKey> &keys, kernel::Instance &instance, FlatScene &flat) {
-  if (keys.empty()) return;
-  const std::size_t number = flat.instance_keys.size() / keys.size();
-  if (number >= SUN_MOST_MOVING_INSTANCES) throw Error{"flatten", "more than 2^20 instances move", "a --shutter of 0 shows them still"};
-  instance.flags |= SUN_INSTANCE_MOVING | static_cast<uint>(number) << SUN_INSTANCE_MOTION_SHIFT;
-  std::fill(std::begin(instance.to_object), std::end(instance.to_object), 0.0f);
-  flat.instance_keys.insert(flat.instance_keys.end(), keys.begin(), keys.end());
-}
-
-void invert(const Placement &p, float *inverse) {
-  const double scale = 1.0 / std::fabs(p.determinant);
-  double linear[9];  // the inverse is the transposed inverse transpose
-  for (int r = 0; r < 3; r++)
-    for (int c = 0; c < 3; c++) linear[3 * r + c] = p.normal[3 * c + r] * scale;
-  for (int r = 0; r < 3; r++) {
-    const double offset = (linear[3 * r] * p.m[3] + linear[3 * r + 1] * p.m[7]) + linear[3 * r + 2] * p.m[11];
-    for (int c = 0; c < 3; c++) inverse[4 * r + c] = static_cast<float>(linear[3 * r + c]);
-    inverse[4 * r + 3] = static_cast<float>(-offset);
-  }
-}
-
-bool in_range(const Bounds &box) {
-  for (int c = 0; c < 3; c++)
-    if (!(box.lower[c] >= -farthest && box.upper[c] <= farthest)) return false;
-  return true;
 }
 
 void number_emitters(FlatScene &flat) {
@@ -306,12 +225,9 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
                      FlatScene &flat, Notices &notices) {
   std::vector<std::vector<kernel::InstanceKey>> keys;
   const auto add = [&](const Placement &p, std::size_t range, std::size_t object, std::vector<kernel::InstanceKey> own_keys) {
-    kernel::Instance instance{};
-    std::copy(std::begin(p.m), std::end(p.m), instance.to_world);
-    invert(p, instance.to_object);
-    instance.flags = (p.mirrored() ? SUN_INSTANCE_MIRRORED : 0) | (flat.meshes[range].deforms ? SUN_INSTANCE_DEFORMING : 0);
+    kernel::Instance instance = instance_at(p);
+    if (flat.meshes[range].deforms) instance.flags |= SUN_INSTANCE_DEFORMING;
     keys.push_back(std::move(own_keys));
-    instance.first_emitter = SUN_NONE;
     flat.instances.push_back(instance);
     flat.instance_mesh.push_back(static_cast<uint>(range));
     flat.instance_object.push_back(static_cast<uint>(object));
@@ -345,9 +261,7 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
 
   std::size_t to = 0, far = 0;
   for (std::size_t i = 0; i < boxes.size(); i++) {
-    const bool usable = in_range(boxes[i]) && (!keys[i].empty() || std::all_of(std::begin(flat.instances[i].to_object), std::end(flat.instances[i].to_object),
-                                                           [](float x) { return std::isfinite(x); }));
-    if (!usable) {
+    if (!in_range(boxes[i]) || (keys[i].empty() && !has_inverse(flat.instances[i]))) {
       far++;
       continue;
     }
@@ -370,90 +284,6 @@ void write_instances(const Scene &scene, const std::vector<MeshUse> &uses, const
     notices.warning(scene.name, std::to_string(far) + " instances lie beyond 1e18 m or cannot be inverted in single precision; they are left out");
 }
 
-uint kind_bit(Shape::Kind kind) {
-  switch (kind) {
-    case Shape::Kind::sphere: return SUN_INSTANCE_SPHERE;
-    case Shape::Kind::disk: return SUN_INSTANCE_DISK;
-    case Shape::Kind::quad: return SUN_INSTANCE_QUAD;
-    case Shape::Kind::plane: return SUN_INSTANCE_PLANE;
-  }
-  return 0;
-}
-
-// The world box of a shape, with the margin of world_box.
-Bounds shape_box(const float *m, Shape::Kind kind) {
-  Bounds box;
-  for (int r = 0; r < 3; r++) {
-    const float x = std::fabs(m[4 * r]), y = std::fabs(m[4 * r + 1]), z = std::fabs(m[4 * r + 2]), center = m[4 * r + 3];
-    const float reach = kind == Shape::Kind::quad   ? x + z
-                        : kind == Shape::Kind::disk ? std::sqrt(x * x + z * z)
-                                                    : std::sqrt((x * x + y * y) + z * z);
-    const float pad = (std::fabs(center) + ((x + y) + z)) * 0x1p-19f;
-    box.lower[r] = (center - reach) - pad;
-    box.upper[r] = (center + reach) + pad;
-  }
-  return box;
-}
-
-// Nothing off the diagonal but the place.
-bool aligned(const float *m) {
-  for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 3; column++)
-      if (row != column && m[4 * row + column] != 0) return false;
-  return true;
-}
-
-// An instance for each shape of the wanted sort, and the triangle that stands for it: it takes up the primitive number and holds the material, and its
-// corners are one point, so no ray hits it.
-void write_shapes(const Scene &scene, bool planes, bool extras, FlatScene &flat, Notices &notices) {
-  std::size_t far = 0;
-  for (std::size_t i = 0; i < scene.shapes.size(); i++) {
-    const Shape &shape = scene.shapes[i];
-    if ((shape.kind == Shape::Kind::plane) != planes) continue;
-    const Placement p = placement_of(shape.transform);
-    kernel::Instance instance{};
-    std::copy(std::begin(p.m), std::end(p.m), instance.to_world);
-    invert(p, instance.to_object);
-    const std::vector<kernel::InstanceKey> keys = keys_of(shape.transform, shape.keys);
-    Bounds box = planes ? Bounds{glm::vec3(0), glm::vec3(0)} : shape_box(p.m, shape.kind);
-    for (const kernel::InstanceKey &key : keys)
-      if (!planes) include_box(box, shape_box(key.to_world, shape.kind));
-    if (!in_range(box) || !std::all_of(std::begin(instance.to_object), std::end(instance.to_object), [](float x) { return std::isfinite(x); })) {
-      far++;
-      continue;
-    }
-    const uint material = material_number(scene, shape.material);
-    instance.flags = kind_bit(shape.kind) | (p.mirrored() ? SUN_INSTANCE_MIRRORED : 0);
-    if (aligned(instance.to_world) && aligned(instance.to_object)) instance.flags |= SUN_INSTANCE_ALIGNED;
-    if (single_sided(flat.materials[material])) instance.flags |= SUN_INSTANCE_SINGLE_SIDED;
-    if (flat.materials[material].flags & SUN_MATERIAL_PASSABLE) instance.flags |= SUN_INSTANCE_PASSABLE;
-    take_keys(keys, instance, flat);
-    instance.first_emitter = SUN_NONE;
-    for (int c = 0; c < 3; c++) {
-      instance.lower[c] = box.lower[c];
-      instance.upper[c] = box.upper[c];
-      if (planes) continue;
-      flat.bounds.lower[c] = std::min(flat.bounds.lower[c], box.lower[c]);
-      flat.bounds.upper[c] = std::max(flat.bounds.upper[c], box.upper[c]);
-    }
-    const auto vertex = static_cast<uint>(flat.vertices.size()), primitive = static_cast<uint>(flat.triangles.size());
-    kernel::Vertex corner{};
-    corner.normal[1] = 1;
-    flat.vertices.push_back(corner);
-    if (extras) flat.vertex_extras.push_back({});
-    flat.triangles.push_back({{vertex, vertex, vertex}, material});
-    flat.triangle_ids.push_back(primitive);
-    flat.triangle_object.push_back(0);
-    flat.instance_mesh.push_back(static_cast<uint>(flat.meshes.size()));
-    flat.meshes.push_back({primitive, 1});
-    flat.instances.push_back(instance);
-    flat.instance_object.push_back(static_cast<uint>(scene.instances.size() + i + 1));
-    flat.shape_count++;
-    flat.plane_count += planes;
-  }
-  if (far) notices.warning(scene.name, std::to_string(far) + " shapes lie beyond 1e18 m or cannot be inverted in single precision; they are left out");
-}
-
 void check_size(const char *what, std::size_t count, std::size_t size, std::size_t max_bytes) {
   if (count > max_bytes / size)
     throw Error{"flatten", std::to_string(count) + " " + what + " do not fit into one buffer of " + std::to_string(max_bytes >> 20) + " MiB",
@@ -461,11 +291,6 @@ void check_size(const char *what, std::size_t count, std::size_t size, std::size
 }
 
 }  // namespace
-
-glm::vec3 transform_point(const kernel::Instance &instance, const float *position) {
-  if (instance.flags & SUN_INSTANCE_IDENTITY) return {position[0], position[1], position[2]};
-  return apply(instance.to_world, position[0], position[1], position[2]);
-}
 
 std::vector<MeshUse> mesh_uses(const Scene &scene) {
   std::vector<MeshUse> uses(scene.meshes.size());

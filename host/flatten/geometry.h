@@ -21,7 +21,4 @@ bool needs_tangents(const Scene &scene, const Primitive &primitive);
 // flat.materials has to be finished. `max_bytes`: of one buffer.
 void flatten_geometry(const Scene &scene, std::size_t max_bytes, FlatScene &flat, Notices &notices);
 
-// A point in world space, the sums in the order of kernels/scene: ((x + y) + z) + offset.
-glm::vec3 transform_point(const kernel::Instance &instance, const float *position);
-
 }  // namespace sunstone

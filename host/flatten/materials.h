@@ -10,6 +10,11 @@ inline kernel::uint material_number(const Scene &scene, int material) {
   return static_cast<kernel::uint>(material < 0 ? scene.materials.size() : static_cast<std::size_t>(material));
 }
 
+// Is what has this material passed by rays that see it from behind?
+inline bool single_sided(const kernel::Material &material) {
+  return !(material.flags & (SUN_MATERIAL_DOUBLE_SIDED | SUN_MATERIAL_VOLUME)) && !(material.transmission > 0);
+}
+
 // Fills flat.materials but for what depends on texels, and collects the textures of materials that an instance shows.
 void flatten_materials(const Scene &scene, TextureLibrary &library, FlatScene &flat);
 

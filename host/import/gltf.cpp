@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // glTF 2.0 -> Scene. The parts: gltf_strict (bytes -> JSON), gltf_value (typed access), gltf_buffers, gltf_accessors, gltf_images, gltf_materials,
-// gltf_skins, gltf_meshes, gltf_curves, gltf_animations, gltf_nodes. The sections cited are those of the glTF 2.0 specification.
+// gltf_skins, gltf_meshes, gltf_curves, gltf_animations, gltf_hierarchy, gltf_nodes. The sections cited are those of the glTF 2.0 specification.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>

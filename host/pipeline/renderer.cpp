@@ -4,13 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
-#include <optional>
 
 #include "base/error.h"
-#include "pipeline/light_map.h"
+#include "pipeline/light_pass.h"
 #include "shared/bidirectional.h"
 
 namespace sunstone {
@@ -18,8 +15,7 @@ namespace sunstone {
 namespace {
 
 constexpr std::uint64_t max_paths_of_a_launch = std::uint64_t(1) << 31;
-constexpr int steps_between_looks = 8;  // of the whole walk, before the host reads how far it is ...
-constexpr int steps_in_a_pass = 4;      // ... and where a launch is short, as a pass over one sample is
+constexpr int steps_between_looks = 8;  // of the whole walk, before the host reads how far it is
 
 struct Tile {
   int x0, y0, width, height;
@@ -61,31 +57,23 @@ struct Renderer::State {
   RenderSettings settings;
   kernel::Frame frame{};
   Film film;
-  RenderCounts counts;
+  Counters counters;
   DeviceScene scene;
   std::vector<Tile> tiles;
   std::unique_ptr<Pool> pool;
   Buffer<kernel::Frame> device_frame;
   Buffer<std::int64_t> device_film;
-  std::vector<kernel::uint> seen;  // counts as they were read last
-  Buffer<kernel::uint> pixels;     // of show
+  Buffer<kernel::uint> pixels;  // of show
   Kernel view;
-  std::vector<Stage> walk;         // the plan's, without stages that nothing asks for here
-  std::unique_ptr<LightMap> map;
-  LightGrid all, caustics;
-  std::optional<std::uint64_t> mapped;  // the sample whose light subpaths are in the map
-  std::uint64_t shrunk = 0;             // iterations that `shrink` stands for
-  double shrink = 1;                    // the radius' square, as a share of the first
+  std::vector<Stage> walk;      // the plan's, without stages that nothing asks for here
+  std::unique_ptr<LightPass> light;  // where the plan has one
 
   State(const Device &d, const Programs &p, const Plan &pl, const RenderSettings &s) : device(d), programs(p), plan(pl), settings(s) {}
   void name_layers();
   void place_tile(const Tile &tile);
   void begin_film(const Tile &tile);
-  void take_counts(std::vector<kernel::uint> now);
-  void resolve_photons();
-  float radius_of(std::uint64_t iteration);
-  void trace_light(StageRunner &runner, std::uint64_t sample);
-  void look_at_light(StageRunner &runner, std::uint64_t sample);
+  // A pass for each sample, so that a launch has one sample alone.
+  bool passes_each_sample() const { return light && !plan.map_once; }
   std::uint64_t render_launch(StageRunner &runner, std::uint64_t first, std::uint64_t count, std::uint64_t before, std::uint64_t wanted,
                               const std::function<bool(const RenderProgress &)> &progress);
   std::uint64_t render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
@@ -165,7 +153,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   frame.cutoff = settings.cutoff;
   std::ranges::copy(settings.ambient, frame.ambient);
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
-  s.resolve_photons();
+  resolve_photons(s.plan, s.settings, frame);
   if (s.plan.bidirectional && !s.plan.light_walk.empty()) frame.flags |= SUN_FRAME_EYE_PASS;
   s.film.settings = film_settings(s.settings, camera, scene.camera_keys);
 
@@ -198,7 +186,7 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   if (static_cast<std::uint64_t>(frame.pool) * light_vertices * SUN_LIGHT_VERTEX_RECORDS * 16 > SUN_NONE)
     throw UsageError("--pool " + std::to_string(frame.pool), "has more light vertices than 32 bits count", "use a smaller pool, or a smaller --max-depth");
   s.pool = std::make_unique<Pool>(device, frame.pool, programs.variant.chunk, shadow_rays, branch_records, light_vertices);
-  if (mapped) s.map = std::make_unique<LightMap>(device, programs.maps(), s.plan.photons ? 1 : SUN_LIGHT_VERTEX_RECORDS);
+  if (mapped) s.light = std::make_unique<LightPass>(device, programs, s.plan, s.settings, frame, s.device_frame);
   // The keys of a camera that moves stand behind the frame.
   const std::size_t key_bytes = scene.camera_keys.size() * sizeof(kernel::Camera);
   s.device_frame = Buffer<kernel::Frame>(device, 1 + (key_bytes + sizeof(kernel::Frame) - 1) / sizeof(kernel::Frame), "frame");
@@ -212,126 +200,26 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
 
 Renderer::~Renderer() = default;
 
-std::vector<std::uint64_t> rays_by_depth(const RenderCounts &counts) {
-  std::vector<std::uint64_t> rays(SUN_COUNT_DEPTHS);
-  std::uint64_t alive = counts.paths;
-  for (std::size_t d = 0; d < rays.size(); d++) {
-    rays[d] = alive;
-    alive = alive + counts.branched_by_depth[d] - counts.ended_by_depth[d];
-  }
-  return rays;
-}
-
-// Adds what was counted since the last look; the device's counters wrap around.
-void Renderer::State::take_counts(std::vector<kernel::uint> now) {
-  const auto since = [&](std::size_t at) { return static_cast<std::uint64_t>(now[at] - seen[at]); };
-  for (std::size_t i = 0; i < SUN_ENDED_COUNT; i++) {
-    counts.ended[i] += since(SUN_COUNT_ENDED + i);
-    counts.paths += since(SUN_COUNT_ENDED + i);
-    counts.camera_rays += since(SUN_COUNT_ENDED + i);
-  }
-  for (std::size_t i = 0; i < SUN_COUNT_DEPTHS; i++) {
-    counts.branched_by_depth[i] += since(SUN_COUNT_BRANCHED + i);
-    counts.paths -= since(SUN_COUNT_BRANCHED + i);
-    counts.camera_rays -= since(SUN_COUNT_BRANCHED + i);
-  }
-  counts.camera_rays += since(SUN_COUNT_RAYS);
-  counts.bounce_rays += since(SUN_COUNT_RAYS + 1);
-  counts.shadow_rays += since(SUN_COUNT_RAYS + 2);
-  counts.clamped += since(SUN_COUNT_CLAMPED);
-  counts.nan += since(SUN_COUNT_NAN);
-  for (std::size_t i = 0; i < SUN_COUNT_DEPTHS; i++) counts.ended_by_depth[i] += since(SUN_COUNT_BY_DEPTH + i);
-  seen = std::move(now);
-}
-
-// What is left to the program: as many photons as the picture has pixels, and a radius within which there are about ten of them, or one where walks are joined, too.
-void Renderer::State::resolve_photons() {
-  if (plan.light_walk.empty()) return;
-  constexpr std::uint32_t least = 1u << 10, most = 1u << 20, once = 500000;
-  const double spread = plan.photons ? 4 : 1;
-  if (!plan.photons) frame.light_paths = frame.width * frame.height;  // each eye path has one of its own
-  else if (settings.photons == 0) settings.photons = plan.map_once ? once : std::clamp(frame.width * frame.height, least, most);
-  if (plan.photons) frame.light_paths = settings.photons;
-  const double size = frame.scene_radius > 0 ? frame.scene_radius : 1;
-  if (settings.radius == 0) settings.radius = static_cast<float>(std::clamp(spread * size / std::sqrt(static_cast<double>(frame.light_paths)), 1e-6, 1e6));
-  if (settings.caustic_radius == 0) settings.caustic_radius = settings.radius / 2;
-}
-
-// The global schedule: a pure function of the iteration, so that iterations may be done in any order and place [Knaus11 eq. 14].
-float Renderer::State::radius_of(std::uint64_t iteration) {
-  if (iteration < shrunk) {
-    shrunk = 0;
-    shrink = 1;
-  }
-  for (; shrunk < iteration; shrunk++) shrink *= (static_cast<double>(shrunk + 1) + static_cast<double>(settings.alpha)) / static_cast<double>(shrunk + 2);
-  return static_cast<float>(static_cast<double>(settings.radius) * std::sqrt(shrink));
-}
-
-// Light subpaths of a sample, in batches of the pool, into the map.
-void Renderer::State::trace_light(StageRunner &runner, std::uint64_t sample) {
-  const kernel::Frame of_eyes = frame;
-  frame.flags = (frame.flags & ~SUN_FRAME_EYE_PASS) | SUN_FRAME_LIGHT_PASS | (plan.photons ? SUN_FRAME_PHOTONS : 0u);
-  frame.sample_first = static_cast<kernel::uint>(sample);
-  device_frame.upload(std::span(&frame, 1));
-  const std::uint32_t paths = plan.photons ? settings.photons : frame.paths_per_sample;
-  map->begin(paths);
-  for (std::uint32_t first = 0; first < paths; first += pool->slots) {
-    const std::uint32_t count = std::min(pool->slots, paths - first);
-    pool->walks.fill_zero();
-    seen.assign(2 * SUN_COUNT_WORDS, 0);
-    seen[SUN_COUNT_NEXT_PATH] = first;
-    seen[SUN_COUNT_PATHS] = first + count;
-    pool->counts.upload(seen);
-    do {
-      for (int step = 0; step < steps_in_a_pass; step++)
-        for (const Stage stage : plan.light_walk) runner.run(stage);
-      take_counts(pool->counts.download());
-    } while (seen[SUN_COUNT_LIVE] != 0 || seen[SUN_COUNT_NEXT_PATH] < first + count);
-    counts.bounce_rays += count;  // their first
-    map->collect(*pool, device_frame, first, count);
-  }
-  map->end();
-  frame = of_eyes;
-}
-
-// Has the map that this sample looks at.
-void Renderer::State::look_at_light(StageRunner &runner, std::uint64_t sample) {
-  if (!map || frame.emitter_count == 0 || settings.max_depth == 0) return;
-  const std::uint64_t wanted = plan.map_once ? 0 : sample;
-  if (mapped != wanted) {
-    mapped.reset();
-    const double radius = plan.map_once ? settings.radius : radius_of(sample);
-    frame.merges = static_cast<float>(std::numbers::pi * radius * radius * frame.light_paths);
-    trace_light(runner, wanted);
-    map->build(all, static_cast<float>(radius), 0);
-    if (plan.map_once) map->build(caustics, settings.caustic_radius, SUN_LIGHT_VERTEX_CAUSTIC);
-    mapped = wanted;
-  }
-  runner.look_at(*map, all, plan.map_once ? &caustics : nullptr);
-}
-
 // One launch of `count` samples from `first` on: steps until every path has ended. Returns how many samples were done.
 std::uint64_t Renderer::State::render_launch(StageRunner &runner, std::uint64_t first, std::uint64_t count, std::uint64_t before, std::uint64_t wanted,
                                              const std::function<bool(const RenderProgress &)> &progress) {
   frame.sample_first = static_cast<kernel::uint>(first);
   device_frame.upload(std::span(&frame, 1));
   const std::uint64_t per_sample = frame.paths_per_sample;
-  seen.assign(2 * SUN_COUNT_WORDS, 0);
-  seen[SUN_COUNT_PATHS] = static_cast<kernel::uint>(count * per_sample);
-  pool->counts.upload(seen);
+  counters.begin(*pool, 0, static_cast<kernel::uint>(count * per_sample));
   bool stopping = false;
   for (;;) {
-    for (int step = 0; step < (map && !plan.map_once ? steps_in_a_pass : steps_between_looks); step++)
+    for (int step = 0; step < (passes_each_sample() ? steps_in_a_pass : steps_between_looks); step++)
       for (const Stage stage : walk) runner.run(stage);
-    take_counts(pool->counts.download());
-    const std::uint64_t begun = seen[SUN_COUNT_NEXT_PATH];
+    counters.look(*pool);
+    const std::uint64_t begun = counters.seen[SUN_COUNT_NEXT_PATH];
     if (!stopping && progress && !progress({before + begun, wanted})) {
       stopping = true;
       count = std::min(count, (begun + per_sample - 1) / per_sample);
       const kernel::uint paths = static_cast<kernel::uint>(count * per_sample);
       pool->counts.upload(std::span(&paths, 1), SUN_COUNT_PATHS);
     }
-    if (seen[SUN_COUNT_LIVE] == 0 && begun >= count * per_sample) break;
+    if (counters.seen[SUN_COUNT_LIVE] == 0 && begun >= count * per_sample) break;
   }
   return count;
 }
@@ -344,25 +232,23 @@ void Renderer::State::place_tile(const Tile &tile) {
   frame.paths_per_sample = static_cast<kernel::uint>(tile.paths_per_sample());
 }
 
-// An empty one. Light subpaths that reach the lens light it while their map is made: a map of before would leave that out.
 void Renderer::State::begin_film(const Tile &tile) {
   place_tile(tile);
   device_film.fill_zero();
-  if (plan.bidirectional) mapped.reset();
+  if (light) light->begin_film();
 }
 
 std::uint64_t Renderer::State::render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
                                            const std::function<bool(const RenderProgress &)> &progress) {
   begin_film(tile);
   StageRunner runner(programs, scene, *pool, device_frame, device_film);
-  const bool mapped_each = map && !plan.map_once;
-  const std::uint64_t at_once = mapped_each ? 1 : std::max<std::uint64_t>(1, max_paths_of_a_launch / tile.paths_per_sample());
+  const std::uint64_t at_once = passes_each_sample() ? 1 : std::max<std::uint64_t>(1, max_paths_of_a_launch / tile.paths_per_sample());
   std::uint64_t done = range.first;
   bool go_on = true;
   const auto asked = [&](const RenderProgress &p) { return go_on = go_on && (!progress || progress(p)); };
   while (go_on && done < range.last) {
     const std::uint64_t count = std::min(at_once, range.last - done);
-    look_at_light(runner, done);
+    if (light) light->look(runner, *pool, counters, done);
     const std::uint64_t finished = render_launch(runner, done, count, begun, wanted, asked);
     begun += finished * tile.paths_per_sample();
     done += finished;
@@ -396,7 +282,7 @@ SampleRange Renderer::render(SampleRange wanted, const std::function<bool(const 
     done.last = s.render_tile(s.tiles[0], wanted, begun, total, progress);
   } else {
     // Every band gets the same samples: a call may end between them only.
-    const std::uint64_t at_once = s.map && !s.plan.map_once ? 1 : 16;
+    const std::uint64_t at_once = s.passes_each_sample() ? 1 : 16;
     bool go_on = true;
     while (go_on && done.last < wanted.last) {
       const SampleRange part{done.last, std::min(wanted.last, done.last + at_once)};
@@ -405,8 +291,8 @@ SampleRange Renderer::render(SampleRange wanted, const std::function<bool(const 
     }
   }
   insert_samples(s.film.samples, done);
-  s.film.clamped = s.counts.clamped;
-  s.film.nan = s.counts.nan;
+  s.film.clamped = s.counters.sum.clamped;
+  s.film.nan = s.counters.sum.nan;
   return done;
 }
 
@@ -418,12 +304,7 @@ void Renderer::warm_up(const CompileProgress &progress) {
   StageRunner runner(s.programs, s.scene, *s.pool, s.device_frame, s.device_film);
   std::vector<Stage> stages = s.plan.light_walk;
   stages.insert(stages.end(), s.walk.begin(), s.walk.end());
-  if (s.map) {
-    s.mapped.reset();
-    s.map->begin(1);
-    s.map->build(s.all, s.settings.radius, 0);
-    runner.look_at(*s.map, s.all, s.plan.map_once ? &s.all : nullptr);
-  }
+  if (s.light) s.light->look_at_nothing(runner);
   for (std::size_t i = 0; i < stages.size(); i++) {
     if (progress) progress(static_cast<double>(i) / static_cast<double>(stages.size()), "first launches");
     runner.run(stages[i]);
@@ -441,13 +322,11 @@ StageProbe::StageProbe(Renderer &renderer, SampleRange samples) : state_(new Sta
   Renderer::State &r = state_->render;
   r.begin_film(r.tiles[0]);
   state_->runner = std::make_unique<StageRunner>(r.programs, r.scene, *r.pool, r.device_frame, r.device_film);
-  r.look_at_light(*state_->runner, samples.first);
+  if (r.light) r.light->look(*state_->runner, *r.pool, r.counters, samples.first);
   r.frame.sample_first = static_cast<kernel::uint>(samples.first);
   r.device_frame.upload(std::span(&r.frame, 1));
-  r.seen.assign(2 * SUN_COUNT_WORDS, 0);
-  const std::uint64_t at_most = r.map && !r.plan.map_once ? 1 : max_paths_of_a_launch / r.frame.paths_per_sample;
-  r.seen[SUN_COUNT_PATHS] = static_cast<kernel::uint>(std::min(samples.last - samples.first, at_most) * r.frame.paths_per_sample);
-  r.pool->counts.upload(r.seen);
+  const std::uint64_t at_most = r.passes_each_sample() ? 1 : max_paths_of_a_launch / r.frame.paths_per_sample;
+  r.counters.begin(*r.pool, 0, static_cast<kernel::uint>(std::min(samples.last - samples.first, at_most) * r.frame.paths_per_sample));
 }
 StageProbe::~StageProbe() = default;
 StageProbe::StageProbe(StageProbe &&) noexcept = default;
@@ -519,7 +398,7 @@ void Renderer::show(const kernel::Camera &camera, float scale) {
 std::vector<kernel::uint> Renderer::shown() const { return state_->pixels.download(); }
 
 const Film &Renderer::film() const { return state_->film; }
-const RenderCounts &Renderer::counts() const { return state_->counts; }
+const RenderCounts &Renderer::counts() const { return state_->counters.sum; }
 std::size_t Renderer::film_bytes() const { return state_->device_film.bytes(); }
 std::size_t Renderer::scene_bytes() const { return state_->scene.bytes; }
 unsigned Renderer::pool_slots() const { return state_->pool->slots; }
@@ -528,7 +407,7 @@ std::size_t Renderer::pool_bytes() const {
   return p.paths.bytes() + p.status.bytes() + p.hits.bytes() + p.shadow_rays.bytes() + p.branches.bytes() + 2 * p.rays[0].bytes() + p.shadow_queue.bytes() + p.walks.bytes() + p.light_vertices.bytes();
 }
 
-std::size_t Renderer::light_map_bytes() const { return state_->map ? state_->map->bytes() + state_->all.bytes() + state_->caustics.bytes() : 0; }
+std::size_t Renderer::light_map_bytes() const { return state_->light ? state_->light->bytes() : 0; }
 
 std::map<std::string, std::string> film_settings(const RenderSettings &s, const kernel::Camera &camera, std::span<const kernel::Camera> camera_keys) {
   Hasher hasher;

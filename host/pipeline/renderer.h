@@ -5,22 +5,12 @@
 #include <memory>
 
 #include "film/film.h"
+#include "pipeline/counts.h"
 #include "pipeline/plan.h"
 #include "pipeline/settings.h"
 #include "pipeline/stages.h"
 
 namespace sunstone {
-
-struct RenderCounts {
-  std::uint64_t paths = 0, clamped = 0, nan = 0;
-  std::uint64_t ended[SUN_ENDED_COUNT] = {};              // light, depth, escaped, absorbed: they add up to the paths, and the branches beside the first of each
-  std::uint64_t camera_rays = 0, bounce_rays = 0, shadow_rays = 0;
-  std::vector<std::uint64_t> ended_by_depth = std::vector<std::uint64_t>(SUN_COUNT_DEPTHS);  // paths that ended after so many scatterings
-  std::vector<std::uint64_t> branched_by_depth = std::vector<std::uint64_t>(SUN_COUNT_DEPTHS);  // further branches begun after so many
-};
-
-// Rays of paths by how many scatterings were before them. One that ended after d was alive at every depth up to d; a branch begun after d from d + 1 on.
-std::vector<std::uint64_t> rays_by_depth(const RenderCounts &counts);
 
 struct RenderProgress {
   std::uint64_t paths_begun = 0, paths_wanted = 0;  // of this call

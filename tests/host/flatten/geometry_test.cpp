@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "flatten/placement.h"
 #include "flatten/weld.h"
 #include "host/flatten/flatten_support.h"
 
