@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // sunstone compare A B: how far two pictures are apart, and whether that is near enough.
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "cli/commands.h"
 #include "content/content.h"
 
@@ -42,11 +42,9 @@ Tolerance parse_tolerance(const std::string &text) {
   for (const Metric &m : metrics) known += (known.empty() ? "" : " ") + std::string(m.name);
   if (equals == std::string::npos || metric == std::end(metrics))
     throw UsageError("--tolerance " + printable(text), "is not METRIC=NUMBER", "the metrics are " + known);
-  double limit = 0;
-  const char *end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data() + equals + 1, end, limit);
-  if (error != std::errc() || rest != end || std::isnan(limit)) throw UsageError("--tolerance " + printable(text), "has no number behind the =");
-  return {metric, limit};
+  const std::optional<double> limit = read_number<double>(std::string_view(text).substr(equals + 1));
+  if (!limit || std::isnan(*limit)) throw UsageError("--tolerance " + printable(text), "has no number behind the =");
+  return {metric, *limit};
 }
 
 struct Options {

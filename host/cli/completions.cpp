@@ -125,6 +125,20 @@ template <class Keep> std::string option_patterns(const std::vector<Command> &al
   return patterns.empty() ? shell_quoted(":") : joined(patterns, "|");
 }
 
+// Cases of a flag that takes a value: those with choices one by one, those that name files, and those of which nothing is known.
+template <class Action> std::string value_cases(const std::vector<Command> &all, Action of_choices, const std::string &of_files) {
+  std::string text;
+  for (const Command &command : all)
+    for (const Flag &flag : command.flags)
+      if (!flag.choices.empty()) {
+        std::vector<std::string> patterns;
+        for (const std::string &name : flag.names) patterns.push_back(shell_quoted(command.path + ":" + name));
+        text += "    " + joined(patterns, "|") + ") " + of_choices(flag) + " ;;\n";
+      }
+  text += "    " + option_patterns(all, [](const Flag &flag) { return flag.choices.empty() && flag.is_file; }) + ") " + of_files + " ;;\n";
+  return text + "    " + option_patterns(all, [](const Flag &flag) { return flag.takes_value && flag.choices.empty() && !flag.is_file; }) + ") return ;;\n";
+}
+
 // The walk over the words before the cursor, for bash and zsh. `at` is the command's path; zsh keeps `path` to itself.
 std::string walk(const std::vector<Command> &all) {
   std::string text = "      case \"$at:$word\" in\n";
@@ -155,15 +169,7 @@ std::string bash_script(const std::vector<Command> &all) {
       "    fi\n"
       "  done\n"
       "  case \"$at:$previous\" in\n";
-  for (const Command &command : all)
-    for (const Flag &flag : command.flags)
-      if (!flag.choices.empty()) {
-        std::vector<std::string> patterns;
-        for (const std::string &name : flag.names) patterns.push_back(shell_quoted(command.path + ":" + name));
-        text += "    " + joined(patterns, "|") + ") words=" + shell_quoted(joined(flag.choices)) + (flag.is_file ? " files=1" : "") + " ;;\n";
-      }
-  text += "    " + option_patterns(all, [](const Flag &flag) { return flag.choices.empty() && flag.is_file; }) + ") files=1 ;;\n";
-  text += "    " + option_patterns(all, [](const Flag &flag) { return flag.takes_value && flag.choices.empty() && !flag.is_file; }) + ") return ;;\n";
+  text += value_cases(all, [](const Flag &flag) { return "words=" + shell_quoted(joined(flag.choices)) + (flag.is_file ? " files=1" : ""); }, "files=1");
   text += "    *)\n      case \"$at\" in\n";
   for (const Command &command : all) {
     std::vector<std::string> words = command.choices, options;
@@ -213,15 +219,7 @@ std::string zsh_script(const std::vector<Command> &all) {
       "  local previous=\"${words[CURRENT-1]}\"\n"
       "  if [[ $PREFIX == --*=* ]]; then previous=\"${PREFIX%%=*}\"; compset -P 1 '*='; fi\n"
       "  case \"$at:$previous\" in\n";
-  for (const Command &command : all)
-    for (const Flag &flag : command.flags)
-      if (!flag.choices.empty()) {
-        std::vector<std::string> patterns;
-        for (const std::string &name : flag.names) patterns.push_back(shell_quoted(command.path + ":" + name));
-        text += "    " + joined(patterns, "|") + ") compadd -- " + joined(flag.choices) + (flag.is_file ? "; _files" : "") + "; return ;;\n";
-      }
-  text += "    " + option_patterns(all, [](const Flag &flag) { return flag.choices.empty() && flag.is_file; }) + ") _files; return ;;\n";
-  text += "    " + option_patterns(all, [](const Flag &flag) { return flag.takes_value && flag.choices.empty() && !flag.is_file; }) + ") return ;;\n";
+  text += value_cases(all, [](const Flag &flag) { return "compadd -- " + joined(flag.choices) + (flag.is_file ? "; _files" : "") + "; return"; }, "_files; return");
   text += "  esac\n  case \"$at\" in\n";
   for (const Command &command : all) {
     std::vector<std::string> options, words;

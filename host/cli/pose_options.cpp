@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // --time-at, --shutter and --animation: what an animated scene looks like then.
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "cli/commands.h"
 
 namespace sunstone {
@@ -13,9 +13,8 @@ void add_pose_options(CLI::App &command, ImportOptions &options) {
       .add_option_function<std::string>(
           "--time-at",
           [&options](const std::string &text) {
-            double seconds = 0;
-            const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-            if (error != std::errc() || rest != text.data() + text.size() || !(std::fabs(seconds) <= 1e9))
+            const std::optional<double> seconds = read_number<double>(text);
+            if (!seconds || !(std::fabs(*seconds) <= 1e9))
               throw CLI::ValidationError("--time-at", printable(text) + " is no time in seconds, at most 1e9");
             options.time = seconds;
           },
@@ -26,9 +25,9 @@ void add_pose_options(CLI::App &command, ImportOptions &options) {
       .add_option_function<std::string>(
           "--shutter",
           [&options](const std::string &text) {
-            const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), options.shutter);
-            if (error != std::errc() || rest != text.data() + text.size() || !(options.shutter >= 0 && options.shutter <= 1e9))
-              throw CLI::ValidationError("--shutter", printable(text) + " is no time in seconds, from 0 to 1e9");
+            const std::optional<double> seconds = read_number<double>(text);
+            if (!seconds || !(*seconds >= 0 && *seconds <= 1e9)) throw CLI::ValidationError("--shutter", printable(text) + " is no time in seconds, from 0 to 1e9");
+            options.shutter = *seconds;
           },
           "Keep the shutter open so long from that time on: what moves is blurred [0]")
       ->type_name("SECONDS")

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "cli/commands.h"
 #include "pipeline/plan.h"
 #include "shared/frame.h"
@@ -19,10 +19,9 @@ namespace sunstone {
 namespace {
 
 template <class T> T parse(const std::string &flag, std::string_view text, const char *what) {
-  T value{};
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || rest != text.data() + text.size()) throw UsageError(flag + " " + printable(text), std::string("is not ") + what);
-  return value;
+  const std::optional<T> value = read_number<T>(text);
+  if (!value) throw UsageError(flag + " " + printable(text), std::string("is not ") + what);
+  return *value;
 }
 
 std::vector<std::string_view> split(std::string_view text, char separator) {

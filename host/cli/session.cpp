@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <future>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "math/elementary.h"
 
 namespace sunstone {
@@ -27,11 +27,10 @@ Camera choose_camera(const Content &content, const RenderOptions &o, const Scene
   } else if (!o.camera.empty()) {
     const Camera *found = nullptr;
     std::string known;
-    std::size_t number = 0;
-    const auto [rest, error] = std::from_chars(o.camera.data(), o.camera.data() + o.camera.size(), number);
+    const std::optional<std::size_t> number = read_number<std::size_t>(o.camera);
     for (std::size_t i = 0; i < scene.cameras.size(); i++) {
       known += fmt::format("{}{} \"{}\"", i ? ", " : "", i, printable(scene.cameras[i].name));
-      if (scene.cameras[i].name == o.camera || (error == std::errc() && rest == o.camera.data() + o.camera.size() && number == i)) found = found ? found : &scene.cameras[i];
+      if (scene.cameras[i].name == o.camera || number == i) found = found ? found : &scene.cameras[i];
     }
     if (!found) throw UsageError("--camera " + printable(o.camera), scene.cameras.empty() ? "the file has no camera" : "no such camera; there are " + known);
     camera = *found;
@@ -136,6 +135,13 @@ Session open_session(const RenderOptions &o, const RenderSettings &settings, Not
   return session;
 }
 
+static void make_renderer(Session &session, const RenderOptions &o, const RenderSettings &settings) {
+  const double begun = now();
+  session.renderer = std::make_unique<Renderer>(session.device, *session.programs, session.loaded.flat, session.loaded.camera, settings, Tuning{o.pool, session.variant.lanes});
+  session.device.finish();
+  session.upload_seconds = now() - begun;
+}
+
 void compile_session(Session &session, const RenderOptions &o, const RenderSettings &settings, const CompileProgress &progress) {
   const auto half = [&](double first) -> CompileProgress {
     return [&progress, first](double fraction, const std::string &what) {
@@ -145,10 +151,7 @@ void compile_session(Session &session, const RenderOptions &o, const RenderSetti
   double begun = now();
   session.programs = std::make_unique<Programs>(session.device, session.variant, half(0));
   session.compile_seconds = now() - begun;
-  begun = now();
-  session.renderer = std::make_unique<Renderer>(session.device, *session.programs, session.loaded.flat, session.loaded.camera, settings, Tuning{o.pool, session.variant.lanes});
-  session.device.finish();
-  session.upload_seconds = now() - begun;
+  make_renderer(session, o, settings);
   begun = now();
   session.renderer->warm_up(half(0.5));
   session.compile_seconds += now() - begun;
@@ -159,16 +162,13 @@ void next_frame(Session &session, const RenderOptions &o, const RenderSettings &
   session.loaded = load_scene(o, settings, session.variant.layout, session.device.info(), notices, session.loaded.at_rest);
   session.compile_seconds = 0;
   const Variant variant = scene_variant(session.variant, session.loaded.flat, settings);
-  double begun = now();
   if (variant != session.variant) {
+    const double begun = now();
     session.variant = variant;
     session.programs = std::make_unique<Programs>(session.device, variant);
     session.compile_seconds = now() - begun;
-    begun = now();
   }
-  session.renderer = std::make_unique<Renderer>(session.device, *session.programs, session.loaded.flat, session.loaded.camera, settings, Tuning{o.pool, session.variant.lanes});
-  session.device.finish();
-  session.upload_seconds = now() - begun;
+  make_renderer(session, o, settings);
 }
 
 }  // namespace sunstone

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // --exposure and --tone.
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number.h"
 #include "cli/commands.h"
 
 namespace sunstone {
@@ -17,10 +17,8 @@ void add_view_options(CLI::App &command, ViewOptions &view) {
               view.exposure.reset();
               return;
             }
-            float ev = 0;
-            const char *begin = text.data() + (text.starts_with('+') ? 1 : 0), *end = text.data() + text.size();
-            const auto [rest, error] = std::from_chars(begin, end, ev);
-            if (error != std::errc() || rest != end || !std::isfinite(ev) || std::fabs(ev) > 64)
+            const std::optional<float> ev = read_number<float>(std::string_view(text).substr(text.starts_with('+') ? 1 : 0));
+            if (!ev || !(std::fabs(*ev) <= 64))
               throw CLI::ValidationError("--exposure", printable(text) + " is neither \"auto\" nor a number of stops from -64 to 64");
             view.exposure = ev;
           },

@@ -2,10 +2,10 @@
 #include "import/gltf_animations.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "base/error.h"
+#include "base/number.h"
 
 namespace sunstone::gltf {
 
@@ -13,16 +13,14 @@ namespace {
 
 Value chosen(const Value &animations, const std::string &choice) {
   if (choice.empty()) return animations[0];
-  std::size_t number = 0;
-  const char *const end = choice.data() + choice.size();
-  const auto [rest, error] = std::from_chars(choice.data(), end, number);
+  const std::optional<std::size_t> number = read_number<std::size_t>(choice);
   std::optional<std::size_t> found;
   std::string known;
   for (std::size_t i = 0; i < animations.size(); i++) {
     animations[i].expect_object();
     const std::string name = animations[i]["name"].text();
     if (i < 20) known += (i ? ", " : "") + std::to_string(i) + " \"" + printable(name) + "\"";
-    if (!found && (name == choice || (error == std::errc() && rest == end && number == i))) found = i;
+    if (!found && (name == choice || number == i)) found = i;
   }
   if (!found) throw UsageError("--animation " + printable(choice), "no such animation; there are " + known + (animations.size() > 20 ? ", ..." : ""));
   return animations[*found];

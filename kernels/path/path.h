@@ -30,6 +30,13 @@ typedef struct Paths {
   uint pool;
 } Paths;
 
+SUN_FN Paths open_paths(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *words) {
+  Paths paths;
+  paths.words = words;
+  paths.pool = frame->pool;
+  return paths;
+}
+
 SUN_FN uint path_word(const Paths *paths, uint slot, uint field) {
   return SUN_COLUMNS ? field * paths->pool + slot : slot * SUN_PATH_WORDS + field;
 }
@@ -68,6 +75,25 @@ SUN_FN void path_store(const Paths *paths, uint_n slots, mask active, const Path
     for (uint field = 0; field < SUN_PATH_WORDS; field++) store_uint(paths->words + field * paths->pool, slots, active, words[field]);
   else
     store_records(paths->words, slots, active, words);
+}
+
+SUN_FN vec3 path_direction(const Path *path) { return make_vec3(path->direction_x, path->direction_y, path->direction_z); }
+SUN_FN vec3 path_throughput(const Path *path) { return make_vec3(path->throughput_r, path->throughput_g, path->throughput_b); }
+
+SUN_FN void path_set_throughput(Path *path, vec3 throughput) {
+  path->throughput_r = throughput.x;
+  path->throughput_g = throughput.y;
+  path->throughput_b = throughput.z;
+}
+
+// Another ray for the lanes in `on`.
+SUN_FN void path_aim(Path *path, mask on, vec3 origin, vec3 direction) {
+  path->origin_x = on ? origin.x : path->origin_x;
+  path->origin_y = on ? origin.y : path->origin_y;
+  path->origin_z = on ? origin.z : path->origin_z;
+  path->direction_x = on ? direction.x : path->direction_x;
+  path->direction_y = on ? direction.y : path->direction_y;
+  path->direction_z = on ? direction.z : path->direction_z;
 }
 
 #define SUN_PHOTON_KEY 0x7068f070u

@@ -22,5 +22,17 @@ SUN_FN QueueLanes queue_lanes(const SUN_GLOBAL uint *queue, uint first, uint len
   return lanes;
 }
 
+// Those of them whose slot's status has, of the bits `asked`, the ones that are `wanted` and no other. `word`: all of it.
+SUN_FN QueueLanes queue_lanes_with(const SUN_GLOBAL uint *queue, uint first, uint length, const SUN_GLOBAL uint *status, uint asked, uint wanted, uint_n *word) {
+  QueueLanes lanes;
+  *word = lanes.slot = (uint_n)(0);
+  lanes.active = lanes.slot != (uint_n)(0);
+  if (first >= length) return lanes;
+  lanes = queue_lanes(queue, first, length);
+  *word = gather_uint(status, lanes.slot);
+  lanes.active = lanes.active & ((*word & (uint_n)(asked)) == (uint_n)(wanted));
+  return lanes;
+}
+
 SUN_NAMESPACE_END
 #endif

@@ -2,7 +2,7 @@
 // The two questions of a ray, over the layout that SUN_LAYOUT names: the nearest hit, and whether there is any.
 #ifndef SUN_SCENE_TRAVERSE_H
 #define SUN_SCENE_TRAVERSE_H
-#include "scene/triangle.h"  // here, not within a branch: the embedding puts each file in place once, where it is first asked for
+#include "scene/trace_scene.h"  // here, not within a branch: the embedding puts each file in place once, where it is first asked for
 #if SUN_LAYOUT == SUN_LAYOUT_BINARY
 #include "scene/traverse_binary.h"
 #else

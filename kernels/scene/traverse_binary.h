@@ -2,28 +2,9 @@
 // The binary layout: scalar, one box test a child. For GPUs and narrow machines, for the host (compiled as C++), and as the reference of the others.
 #ifndef SUN_SCENE_TRAVERSE_BINARY_H
 #define SUN_SCENE_TRAVERSE_BINARY_H
-#include "scene/triangle.h"
+#include "scene/trace_scene.h"
 
 SUN_NAMESPACE_BEGIN
-
-typedef BinaryNode TraceNode;
-
-typedef struct TraceScene {
-  const SUN_GLOBAL TraceNode *nodes;
-  const SUN_GLOBAL TraceLeaf *leaves;
-  const SUN_GLOBAL uint *instance_list;
-  const SUN_GLOBAL uint *roots;
-  const SUN_GLOBAL Fragment *fragments;
-  const SUN_GLOBAL Instance *instances;
-  const SUN_GLOBAL Motion *motion;
-  uint top_root;
-  uint instance_count;
-  uint plane_count;  // instances behind those
-} TraceScene;
-
-// A node that waits: its box's near t in the upper half (t >= 0, so integers sort like floats), its number in the lower one.
-SUN_INLINE ulong waiting(float t, uint node) { return ((ulong)as_uint(t) << 32) | node; }
-SUN_INLINE float waiting_t(ulong entry) { return as_float((uint)(entry >> 32)); }
 
 #define SUN_TRACE_STACK SUN_BINARY_STACK
 
@@ -39,15 +20,6 @@ SUN_INLINE uint open_node(const TraceScene *scene, uint first, const PreparedRay
     return swap ? first + 1 : first;
   }
   return hit_a ? first : hit_b ? first + 1 : SUN_NONE;
-}
-
-// The next node that waits and is not beyond `limit`, or SUN_NONE.
-SUN_INLINE uint pop_node(const ulong *stack, int *size, float limit) {
-  while (*size > 0) {
-    const ulong entry = stack[--*size];
-    if (waiting_t(entry) <= limit) return (uint)entry;
-  }
-  return SUN_NONE;
 }
 
 // The mesh below `root`: takes the nearest hit that counts. With `any` the first that counts; true if there is one.

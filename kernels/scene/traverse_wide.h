@@ -2,40 +2,30 @@
 // The wide layouts for CPUs: explicit vectors over the 8 or 16 children of a node and the 8 triangles of a pack, one ray per work-item.
 #ifndef SUN_SCENE_TRAVERSE_WIDE_H
 #define SUN_SCENE_TRAVERSE_WIDE_H
-#include "scene/triangle.h"
+#include "scene/trace_scene.h"
 
 #if SUN_LAYOUT == SUN_LAYOUT_WIDE16
 #define SUN_WIDTH 16
-typedef Wide16Node TraceNode;
 typedef float16 node_float;
 typedef int16 node_int;
 #define NODE_PLANE(node, k) vload16(0, (node)->plane[k])
 #define NODE_STORE(v, array) vstore16((v), 0, (array))
 #else
 #define SUN_WIDTH 8
-typedef Wide8Node TraceNode;
 typedef float8 node_float;
 typedef int8 node_int;
 #define NODE_PLANE(node, k) vload8(0, (node)->plane[k])
 #define NODE_STORE(v, array) vstore8((v), 0, (array))
 #endif
 
-typedef struct TraceScene {
-  const SUN_GLOBAL TraceNode *nodes;
-  const SUN_GLOBAL TraceLeaf *leaves;
-  const SUN_GLOBAL uint *instance_list;
-  const SUN_GLOBAL uint *roots;
-  const SUN_GLOBAL Fragment *fragments;
-  const SUN_GLOBAL Instance *instances;
-  const SUN_GLOBAL Motion *motion;
-  uint top_root;
-  uint instance_count;
-  uint plane_count;  // instances behind those
-} TraceScene;
-
 typedef struct LaneSet {
   ulong low, high;
 } LaneSet;
+SUN_INLINE float least_of8(float8 b) {
+  const float4 c = SUN_LESSER(b.lo, b.hi);
+  const float2 d = SUN_LESSER(c.lo, c.hi);
+  return SUN_LESSER(d.x, d.y);
+}
 #if SUN_WIDTH == 16
 SUN_INLINE LaneSet lanes_of(int16 m) {
   const ulong2 words = as_ulong2(convert_char16(m)) & LANE_BYTES;
@@ -44,13 +34,7 @@ SUN_INLINE LaneSet lanes_of(int16 m) {
   set.high = words.s1;
   return set;
 }
-SUN_INLINE float least_of(float16 a) {
-  const float8 b = SUN_LESSER(a.lo, a.hi);
-  const float4 c = SUN_LESSER(b.lo, b.hi);
-  const float2 d = SUN_LESSER(c.lo, c.hi);
-  return SUN_LESSER(d.x, d.y);
-}
-SUN_INLINE float greatest_of(float16 a) { return -least_of(-a); }
+SUN_INLINE float least_of(float16 a) { return least_of8(SUN_LESSER(a.lo, a.hi)); }
 #else
 SUN_INLINE LaneSet lanes_of(int8 m) {
   LaneSet set;
@@ -58,18 +42,9 @@ SUN_INLINE LaneSet lanes_of(int8 m) {
   set.high = 0;
   return set;
 }
-SUN_INLINE float least_of(float8 b) {
-  const float4 c = SUN_LESSER(b.lo, b.hi);
-  const float2 d = SUN_LESSER(c.lo, c.hi);
-  return SUN_LESSER(d.x, d.y);
-}
-SUN_INLINE float greatest_of(float8 a) { return -least_of(-a); }
+SUN_INLINE float least_of(float8 a) { return least_of8(a); }
 #endif
-SUN_INLINE float least_of8(float8 b) {
-  const float4 c = SUN_LESSER(b.lo, b.hi);
-  const float2 d = SUN_LESSER(c.lo, c.hi);
-  return SUN_LESSER(d.x, d.y);
-}
+SUN_INLINE float greatest_of(node_float a) { return -least_of(-a); }
 SUN_INLINE uint least_id8(uint8 a) {
   const uint4 b = min(a.lo, a.hi);
   const uint2 c = min(b.lo, b.hi);
@@ -98,8 +73,6 @@ SUN_INLINE int highest_byte(ulong bytes) { return (int)((63ul - clz(bytes)) >> 3
   }
 #define SOME_LANE(set) ((set).low | (set).high)
 
-// A child that waits is a ulong: its box's near t in the upper half (t >= 0, so integers sort like floats), its reference in the lower one. A stack's
-// size stands apart from its entries, so that it stays in a register.
 #define SUN_TRACE_STACK SUN_WIDE_STACK
 
 // Children whose boxes the ray meets between `from` and `limit`.
@@ -130,10 +103,10 @@ SUN_INLINE uint open_node(const SUN_GLOBAL TraceNode *node, const PreparedRay *r
   const int base = *size;
   int lane;
   TAKE_LANE(hit, lane)
-  ulong nearest = ((ulong)as_uint(t[lane]) << 32) | node->child[lane];
+  ulong nearest = waiting(t[lane], node->child[lane]);
   while (SOME_LANE(hit)) {
     TAKE_LANE(hit, lane)
-    const ulong entry = ((ulong)as_uint(t[lane]) << 32) | node->child[lane];
+    const ulong entry = waiting(t[lane], node->child[lane]);
     const ulong farther_one = max(entry, nearest);
     nearest = min(entry, nearest);
     int at = (*size)++;
@@ -160,15 +133,6 @@ SUN_INLINE uint open_node_unsorted(const SUN_GLOBAL TraceNode *node, const Prepa
     first = node->child[lane];
   }
   return first;
-}
-
-// The next child that waits and is not beyond `limit`, or SUN_NONE.
-SUN_INLINE uint pop_child(const ulong *stack, int *size, float limit) {
-  while (*size > 0) {
-    const ulong entry = stack[--*size];
-    if (as_float((uint)(entry >> 32)) <= limit) return (uint)entry;
-  }
-  return SUN_NONE;
 }
 
 // The mesh below `root`: takes the nearest hit that counts. With `any_one` the first that counts; true if there is one.
@@ -213,7 +177,7 @@ SUN_INLINE int search_mesh(const TraceScene *scene, uint root, const PreparedRay
         }
       }
     }
-    current = pop_child(stack, &size, limit);
+    current = pop_node(stack, &size, limit);
   }
   return 0;
 }
@@ -231,10 +195,10 @@ SUN_INLINE InstanceWalk begin_instances(const TraceScene *scene, int alone, ulon
 }
 
 SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, float from, float limit, ulong *stack, InstanceWalk *walk) {
-  uint current = pop_child(stack, &walk->size, limit);
+  uint current = pop_node(stack, &walk->size, limit);
   while (!(current & SUN_WIDE_LEAF)) {
     current = open_node(&scene->nodes[current], ray, from, limit, stack, &walk->size);
-    if (current == SUN_NONE) current = pop_child(stack, &walk->size, limit);
+    if (current == SUN_NONE) current = pop_node(stack, &walk->size, limit);
   }
   return current == SUN_NONE ? SUN_NONE : current & ~SUN_WIDE_LEAF;
 }

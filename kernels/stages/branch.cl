@@ -11,19 +11,14 @@
 
 SUN_BODY void branch_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, SUN_GLOBAL Hit *hits,
                             const SUN_GLOBAL uint *branches, const SUN_GLOBAL uint *rays, FilmCounts counts, uint first) {
-  uint length = counts[SUN_COUNT_LIVE];
-  if (first >= length) return;
-  QueueLanes lanes = queue_lanes(rays, first, length);
-  uint_n word = gather_uint(status, lanes.slot);
-  mask ended = lanes.active & ((word & (uint_n)(SUN_STATUS_ENDED)) != (uint_n)(0));
-  if (!ANY(ended)) return;
+  uint_n word;
+  QueueLanes lanes = queue_lanes_with(rays, first, counts[SUN_COUNT_LIVE], status, SUN_STATUS_ENDED, SUN_STATUS_ENDED, &word);
+  if (!ANY(lanes.active)) return;
   BranchState state = load_branch_state(frame, branches, lanes.slot);
-  mask back = ended & (state.height > (uint_n)(0));
+  mask back = lanes.active & (state.height > (uint_n)(0));
   if (!ANY(back)) return;
   BranchVertex v = load_branch_vertex(frame, branches, lanes.slot, back, state.height - (uint_n)(1));
-  Paths paths;
-  paths.words = path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, path_words);
   path_store(&paths, lanes.slot, back, &v.path);
   uint slot[LANES], instance[LANES], primitive[LANES], words[LANES], depth[LANES];
   int on[LANES];

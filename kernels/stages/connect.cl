@@ -61,26 +61,22 @@ SUN_FN real run_into_weight(const SUN_GLOBAL Frame *frame, const Walk *walk, uin
 SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *walks, const SUN_GLOBAL uint *light_vertices,
                              const SUN_GLOBAL uint *path_starts, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays, FilmCounts counts,
                              FilmWords film_words, uint first) {
-  uint length = counts[SUN_COUNT_LIVE];
-  if (first >= length) return;
-  QueueLanes lanes = queue_lanes(rays, first, length);
-  uint_n word = gather_uint(status, lanes.slot);
-  const uint_n zero = (uint_n)(0), one = (uint_n)(1), two = (uint_n)(2);
-  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_LIGHT | SUN_STATUS_TURN)) == (uint_n)(SUN_STATUS_ALIVE));
+  uint_n word;
+  QueueLanes lanes = queue_lanes_with(rays, first, counts[SUN_COUNT_LIVE], status, SUN_STATUS_ALIVE | SUN_STATUS_LIGHT | SUN_STATUS_TURN, SUN_STATUS_ALIVE, &word);
+  const mask active = lanes.active;
   if (!ANY(active)) return;
   Scene opened = open_scene(frame, SCENE_ARGUMENTS);
   const Scene *scene = &opened;
   FilmView film = open_film(frame, film_words, counts);
-  Paths paths;
-  paths.words = path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, path_words);
   Path path = path_load(&paths, lanes.slot);
   Walk walk = walk_load(walks, lanes.slot);
   HitLanes hit = load_hits(hits, lanes.slot, active);
+  const uint_n zero = (uint_n)(0), one = (uint_n)(1), two = (uint_n)(2);
   uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
   uint_n kept = word & (uint_n)(SUN_STATUS_FIRST_HIT);
-  vec3 direction = make_vec3(path.direction_x, path.direction_y, path.direction_z);
-  vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
+  vec3 direction = path_direction(&path);
+  vec3 throughput = path_throughput(&path);
   vec3 radiance = splat3((real)(0.0f)), arrived = throughput;
   SamplerKey key = path_key(frame, &path);
   at_moment(&opened, &key);
@@ -89,8 +85,7 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
   mask escaped = active & !hit.hit;
   if (frame->flags & SUN_FRAME_TRANSPARENT) escaped = escaped & (depth != zero);
   if (ANY(escaped) && environment->kind != SUN_ENVIRONMENT_NONE) {
-    real direct = (real)(0.0f);
-    if (environment->emitter != SUN_NONE) direct = scene->emitters[environment->emitter].pmf * environment_pdf(environment, scene->environment_cdf, direction);
+    real direct = environment_emitter_pdf(scene, direction);
     real weight = run_into_weight(frame, &walk, depth, direct, direct / (SUN_PI * frame->scene_radius * frame->scene_radius));
     radiance = select3(escaped, scale3(environment_radiance(environment, scene->environment_texels, direction), weight), radiance);
   }
@@ -122,9 +117,6 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
     uint_n reason = glowing ? (uint_n)(SUN_ENDED_LIGHT) : limited ? (uint_n)(SUN_ENDED_DEPTH) : (uint_n)(SUN_ENDED_ABSORBED);
     mask turned = found & !found;
     uint_n shadows = zero;
-    Scatter scatter;
-    scatter.origin = scatter.direction = splat3((real)(0.0f));
-    scatter.pdf_solid_angle = (real)(0.0f);
     if (ANY(scatters)) {
       Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
       vec3 wo_local = to_local(&surface.shading, wo);
@@ -154,27 +146,21 @@ SUN_BODY void connect_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       real u_lobe = sample_1d(&key, SUN_DIM_LOBE(path.vertex));
       vec2 u = sample_2d(&key, SUN_DIM_DIRECTION(path.vertex));
       Walk left = there;
-      scatter = scatter_walk(scene, &surface, &vertex.at, &lobes, wo, wo_local, u_lobe, u, scatters & !limited, 0, &left);
+      Scatter scatter = scatter_walk(scene, &surface, &vertex.at, &lobes, wo, wo_local, u_lobe, u, scatters & !limited, 0, &left);
       turned = scatters & !limited & scatter.valid & !scatter.straight;
       straight = straight | (scatters & scatter.valid & scatter.straight);
       throughput = select3(scatters & scatter.valid, mul3(throughput, scatter.weight), throughput);
       weights_turn(&walk, &left, turned);
+      path_turn(&path, &scatter, turned);
     }
-    path_step(&path, &scatter, &hit, turned, straight);
-    mask alive = turned | straight;
-    uint_n ended_word = (uint_n)(SUN_STATUS_ENDED) | (reason << (uint_n)(SUN_STATUS_ENDED_SHIFT));
-    uint_n found_word = (alive ? (uint_n)(SUN_STATUS_ALIVE) : ended_word) | (shadows << (uint_n)(SUN_STATUS_SHADOWS_SHIFT));
-    found_word = found_word | (shadows != zero ? (uint_n)(SUN_STATUS_SHADOW) : zero);
-    found_word = found_word | (turned ? depth + one : depth);
-    next_word = found ? found_word | kept : next_word;
+    path_pass(&path, &hit, turned, straight);
+    next_word = found ? status_after(turned | straight, reason, shadows, turned ? depth + one : depth) | kept : next_word;
   }
 
   real sum = fabs(radiance.x) + fabs(radiance.y) + fabs(radiance.z);
   mask shines = active & !(sum == 0.0f);
   if (ANY(shines)) film_contribute_lanes(frame, &film, shines, &path, depth, mul3(arrived, radiance));
-  path.throughput_r = throughput.x;
-  path.throughput_g = throughput.y;
-  path.throughput_b = throughput.z;
+  path_set_throughput(&path, throughput);
   path.vertex = path.vertex + one;
   path_store(&paths, lanes.slot, active, &path);
   walk_store(walks, lanes.slot, active, &walk);

@@ -17,21 +17,17 @@
 SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *walks, SUN_GLOBAL uint *light_vertices,
                              SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays,
                              const SUN_GLOBAL uint *counts, uint first) {
-  uint length = counts[SUN_COUNT_LIVE];
-  if (first >= length) return;
-  QueueLanes lanes = queue_lanes(rays, first, length);
-  uint_n word = gather_uint(status, lanes.slot);
-  const uint_n walking = (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_LIGHT), zero = (uint_n)(0), one = (uint_n)(1);
-  mask active = lanes.active & ((word & walking) == walking);
+  uint_n word;
+  QueueLanes lanes = queue_lanes_with(rays, first, counts[SUN_COUNT_LIVE], status, SUN_STATUS_ALIVE | SUN_STATUS_LIGHT, SUN_STATUS_ALIVE | SUN_STATUS_LIGHT, &word);
+  const mask active = lanes.active;
   if (!ANY(active)) return;
   Scene opened = open_scene(frame, SCENE_ARGUMENTS);
   const Scene *scene = &opened;
-  Paths paths;
-  paths.words = path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, path_words);
   Path path = path_load(&paths, lanes.slot);
   Walk walk = walk_load(walks, lanes.slot);
   HitLanes hit = load_hits(hits, lanes.slot, active);
+  const uint_n walking = (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_LIGHT), zero = (uint_n)(0), one = (uint_n)(1);
   uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
   const uint alone = frame->flags & SUN_FRAME_LIGHT_PASS, photons = frame->flags & SUN_FRAME_PHOTONS;
   uint_n next_word = (uint_n)(alone ? 0u : SUN_STATUS_ALIVE | SUN_STATUS_TURN);
@@ -39,8 +35,8 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
   if (ANY(found)) {
     SamplerKey key = path_key(frame, &path);
     at_moment(&opened, &key);
-    vec3 wo = make_vec3(-path.direction_x, -path.direction_y, -path.direction_z);
-    vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
+    vec3 wo = negate3(path_direction(&path));
+    vec3 throughput = path_throughput(&path);
     Surface surface = make_surface(scene, &hit, wo);
     real transmission;
     GATHER_FLOAT(transmission, scene->materials, surface.material, transmission);
@@ -51,7 +47,7 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
     Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
     vec3 wo_local = to_local(&surface.shading, wo);
     Lobes lobes = bsdf_lobes(&bsdf, scene->tables, wo_local);
-    scatters = scatters & (lobes.pick_facets + lobes.pick_above + lobes.pick_below + lobes.pick_grazing_above + lobes.pick_grazing_below > 0.0f);
+    scatters = scatters & has_lobes(&lobes);
     // Through the front of what has one side.
     mask through = one_sided & surface.front;
     real chance = unlit | (found & !absent & !scatters) ? (real)(1.0f) : (real)(SUN_PASSES_ONE_SIDED);
@@ -138,16 +134,10 @@ SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SU
       GATHER_VEC3(absorbs, scene->materials, surface.material, absorption[0]);
       mask inner = bsdf.solid & ((dot3(scatter.direction, surface.normal) > 0.0f) != surface.front);
       walk.absorption = select3(turned, select3(inner, absorbs, splat3((real)(0.0f))), walk.absorption);
-      path_step(&path, &scatter, &hit, turned, straight);
-    } else {
-      Scatter none;
-      none.origin = none.direction = splat3((real)(0.0f));
-      none.pdf_solid_angle = (real)(0.0f);
-      path_step(&path, &none, &hit, turned, straight);
+      path_turn(&path, &scatter, turned);
     }
-    path.throughput_r = throughput.x;
-    path.throughput_g = throughput.y;
-    path.throughput_b = throughput.z;
+    path_pass(&path, &hit, turned, straight);
+    path_set_throughput(&path, throughput);
     mask alive = turned | straight;
     next_word = alive ? walking | (turned ? depth + one : depth) : next_word;
     next_word = next_word | (shadows != zero ? (uint_n)(SUN_STATUS_SHADOW) | (shadows << (uint_n)(SUN_STATUS_SHADOWS_SHIFT)) : zero);

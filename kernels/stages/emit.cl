@@ -25,9 +25,7 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
   if (!ANY(fresh | turns)) return;
   Scene opened = open_scene(frame, SCENE_ARGUMENTS);
   const Scene *scene = &opened;
-  Paths paths;
-  paths.words = path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, path_words);
   uint_n path_count = (uint_n)(counts[SUN_COUNT_REFILL_PATH]) + (fresh ? position - (uint_n)(refill_first) : (uint_n)(0));
   PathNumber number = path_number(frame, path_count);
   if (frame->flags & SUN_FRAME_PHOTONS) number.inside = path_count < (uint_n)(frame->light_paths);
@@ -48,7 +46,7 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
   at_moment(&opened, &key);
   mask looks = turns | inside;
   uint_n begun = (uint_n)((frame->flags & SUN_FRAME_LIGHT_PASS) ? 0u : SUN_STATUS_ALIVE);
-  vec3 camera_direction = make_vec3(path.direction_x, path.direction_y, path.direction_z);
+  vec3 camera_direction = path_direction(&path);
   real subpaths = (real)((float)frame->width * (float)frame->height);
   walk.vertices = turns ? walk.vertices : (uint_n)(0);
   walk.rough = (uint_n)(0);
@@ -63,17 +61,8 @@ SUN_BODY void emit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_G
     uint_n vertex = (uint_n)(SUN_LIGHT_VERTEX);
     Emission e = sample_emission(scene, sample_1d(&key, SUN_DIM_EMITTER(vertex)), sample_1d(&key, SUN_DIM_LOBE(vertex)), sample_2d(&key, SUN_DIM_EMITTER_POINT(vertex)),
                                  sample_2d(&key, SUN_DIM_DIRECTION(vertex)), inside);
-    Path light = path;
-    begin_ray(&light, e.origin, e.direction);
-    path.origin_x = e.valid ? light.origin_x : path.origin_x;
-    path.origin_y = e.valid ? light.origin_y : path.origin_y;
-    path.origin_z = e.valid ? light.origin_z : path.origin_z;
-    path.direction_x = e.valid ? light.direction_x : path.direction_x;
-    path.direction_y = e.valid ? light.direction_y : path.direction_y;
-    path.direction_z = e.valid ? light.direction_z : path.direction_z;
-    path.throughput_r = e.valid ? (real)(1.0f) : path.throughput_r;
-    path.throughput_g = e.valid ? (real)(1.0f) : path.throughput_g;
-    path.throughput_b = e.valid ? (real)(1.0f) : path.throughput_b;
+    path_aim(&path, e.valid, e.origin, e.direction);
+    path_set_throughput(&path, select3(e.valid, splat3((real)(1.0f)), path_throughput(&path)));
     path.vertex = e.valid ? vertex + (uint_n)(1) : path.vertex;
     walk.emitted = select3(e.valid, e.flux, walk.emitted);
     walk.unseen = e.valid & e.pointed;

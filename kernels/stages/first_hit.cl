@@ -9,25 +9,19 @@
 
 SUN_BODY void first_hit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status,
                                const SUN_GLOBAL Hit *hits, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words, uint first) {
-  uint length = counts[SUN_COUNT_LIVE];
-  if (first >= length) return;
-  QueueLanes lanes = queue_lanes(rays, first, length);
-  uint_n word = gather_uint(status, lanes.slot);
-  uint_n done = (uint_n)(SUN_STATUS_DEPTH | SUN_STATUS_FIRST_HIT | SUN_STATUS_LIGHT);
-  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0)) & ((word & done) == (uint_n)(0));
-  if (!ANY(active)) return;
+  uint_n word;
+  QueueLanes lanes = queue_lanes_with(rays, first, counts[SUN_COUNT_LIVE], status, SUN_STATUS_ALIVE | SUN_STATUS_DEPTH | SUN_STATUS_FIRST_HIT | SUN_STATUS_LIGHT, SUN_STATUS_ALIVE, &word);
+  if (!ANY(lanes.active)) return;
   Scene opened = open_scene(frame, SCENE_ARGUMENTS);
   const Scene *scene = &opened;
   FilmView film = open_film(frame, film_words, counts);
-  Paths paths;
-  paths.words = path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, path_words);
   Path path = path_load(&paths, lanes.slot);
-  HitLanes hit = load_hits(hits, lanes.slot, active);
+  HitLanes hit = load_hits(hits, lanes.slot, lanes.active);
   if (!ANY(hit.hit)) return;
   SamplerKey key = path_key(frame, &path);
   at_moment(&opened, &key);
-  vec3 wo = make_vec3(-path.direction_x, -path.direction_y, -path.direction_z);
+  vec3 wo = negate3(path_direction(&path));
   mask present = first_hit_layers(scene, &film, &path, &hit, wo, path.throughput_r);
   store_uint(status, lanes.slot, present, word | (uint_n)(SUN_STATUS_FIRST_HIT));
 }

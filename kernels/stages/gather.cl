@@ -15,26 +15,21 @@
 
 SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, const SUN_GLOBAL uint *path_words, const SUN_GLOBAL uint *walks,
                             const SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, LIGHT_MAP_PARAMETERS, uint phase, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words, uint first) {
-  uint length = counts[SUN_COUNT_LIVE];
-  if (first >= length) return;
-  QueueLanes lanes = queue_lanes(rays, first, length);
-  uint_n word = gather_uint(status, lanes.slot);
+  uint_n word;
+  QueueLanes lanes = queue_lanes_with(rays, first, counts[SUN_COUNT_LIVE], status, SUN_STATUS_ALIVE | SUN_STATUS_PHASE, SUN_STATUS_ALIVE | (phase << SUN_STATUS_PHASE_SHIFT), &word);
   uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
-  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE | SUN_STATUS_PHASE)) == (uint_n)(SUN_STATUS_ALIVE | (phase << SUN_STATUS_PHASE_SHIFT)));
-  active = active & (depth < (uint_n)(frame->max_depth));
+  mask active = lanes.active & (depth < (uint_n)(frame->max_depth));
   if (!ANY(active)) return;
   Scene opened = open_scene(frame, SCENE_ARGUMENTS);
   const Scene *scene = &opened;
-  Paths paths;
-  paths.words = (SUN_GLOBAL uint *)path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, (SUN_GLOBAL uint *)path_words);
   Path path = path_load(&paths, lanes.slot);
   HitLanes hit = load_hits(hits, lanes.slot, active);
   mask found = active & hit.hit;
   if (!ANY(found)) return;
   SamplerKey key = path_key(frame, &path);
   at_moment(&opened, &key);
-  vec3 wo = make_vec3(-path.direction_x, -path.direction_y, -path.direction_z);
+  vec3 wo = negate3(path_direction(&path));
   Surface surface = make_surface(scene, &hit, wo);
   mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
   mask gathers = found & !surface_absent(scene, &surface, &hit, &key, path.vertex, found) & !unlit;
@@ -101,7 +96,7 @@ SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, con
         for (int c = 0; c < 3; c++) sums[depths[lane]][c][lane] += rgb[c][lane];
   }
   // Over the area, whose mean the kernel is 2 (1 - d^2 / r^2) of, and over the paths that left the lights.
-  vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
+  vec3 throughput = path_throughput(&path);
   throughput = mul3(throughput, surface_absorption(scene, &surface, hit.t, gathers));
   throughput = scale3(throughput, (real)(2.0f / (SUN_PI * map.radius * map.radius) / (float)frame->light_paths));
   FilmView film = open_film(frame, film_words, counts);

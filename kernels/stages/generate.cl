@@ -14,9 +14,7 @@ SUN_BODY void generate_bundle(const SUN_GLOBAL Frame *frame, const SUN_GLOBAL ui
   uint refill = counts[SUN_COUNT_REFILL];
   if (first >= refill) return;
   const SUN_GLOBAL float *tables = (const SUN_GLOBAL float *)(records + frame->at_tables);
-  Paths paths;
-  paths.words = path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, path_words);
   QueueLanes lanes = queue_lanes(rays + counts[SUN_COUNT_REFILL_FIRST], first, refill);
 
   PathNumber number = path_number(frame, (uint_n)(counts[SUN_COUNT_REFILL_PATH] + first) + uint_of_int((int_n)(LANE_NUMBERS)));

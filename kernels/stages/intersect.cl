@@ -52,9 +52,7 @@ SUN_BODY void intersect_ray(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, cons
   const uint word = status[slot];
   if ((word & (SUN_STATUS_ALIVE | SUN_STATUS_AGAIN)) != SUN_STATUS_ALIVE) return;
   TraceScene scene = make_trace_scene(TREE_ARGUMENTS, instances, frame->instance_count, frame->plane_count);
-  Paths paths;
-  paths.words = (SUN_GLOBAL uint *)path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, (SUN_GLOBAL uint *)path_words);
   Ray ray = path_ray(frame, &paths, slot);
   hits[slot] = closest_hit(&scene, ray, SUN_BIDIRECTIONAL && (word & SUN_STATUS_LIGHT) ? SUN_WANT_BOTH_SIDES : SUN_WANT_ALL);
 }

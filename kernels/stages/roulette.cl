@@ -16,18 +16,14 @@
 
 SUN_BODY void roulette_bundle(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL uint *branches,
                               const SUN_GLOBAL uint *rays, const SUN_GLOBAL uint *counts, uint first) {
-  uint length = counts[SUN_COUNT_LIVE];
-  if (first >= length) return;
-  QueueLanes lanes = queue_lanes(rays, first, length);
-  uint_n word = gather_uint(status, lanes.slot);
+  uint_n word;
+  QueueLanes lanes = queue_lanes_with(rays, first, counts[SUN_COUNT_LIVE], status, SUN_STATUS_ALIVE, SUN_STATUS_ALIVE, &word);
   uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
   mask fixed = frame->absorption >= 0.0f ? lanes.active : lanes.active & !lanes.active;
   uint first_depth = frame->absorption >= 0.0f ? 1u : frame->roulette_depth;
-  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0)) & (depth >= (uint_n)(first_depth));
+  mask active = lanes.active & (depth >= (uint_n)(first_depth));
   if (!ANY(active)) return;
-  Paths paths;
-  paths.words = path_words;
-  paths.pool = frame->pool;
+  Paths paths = open_paths(frame, path_words);
   Path path = path_load(&paths, lanes.slot);
   real brightest = max_real(max_real(fabs(path.throughput_r), fabs(path.throughput_g)), fabs(path.throughput_b));
   // A fixed chance is taken once a scattering: not where the ray went straight on.

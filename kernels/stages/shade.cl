@@ -16,6 +16,7 @@
 #include "transport/emission.h"
 #include "transport/photons.h"
 #include "transport/scatter.h"
+#include "transport/step.h"
 
 SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, mask stored, const DirectSample *direct, vec3 worth, const Path *path,
                               uint_n depth, uint number, real time) {
@@ -36,24 +37,20 @@ SUN_FN void store_shadow_rays(SUN_GLOBAL ShadowRay *shadow_rays, uint_n slots, m
 SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits,
                            SUN_GLOBAL ShadowRay *shadow_rays, SUN_GLOBAL uint *branches, const SUN_GLOBAL uint *rays, FilmCounts counts, FilmWords film_words,
                            uint first) {
-  uint length = counts[SUN_COUNT_LIVE];
-  if (first >= length) return;
+  uint_n word;
+  QueueLanes lanes = queue_lanes_with(rays, first, counts[SUN_COUNT_LIVE], status, SUN_STATUS_ALIVE, SUN_STATUS_ALIVE, &word);
+  const mask active = lanes.active;
+  if (!ANY(active)) return;
   Scene opened = open_scene(frame, SCENE_ARGUMENTS);
   const Scene *scene = &opened;
   FilmView film = open_film(frame, film_words, counts);
-  Paths paths;
-  paths.words = path_words;
-  paths.pool = frame->pool;
-  QueueLanes lanes = queue_lanes(rays, first, length);
-  uint_n word = gather_uint(status, lanes.slot);
-  mask active = lanes.active & ((word & (uint_n)(SUN_STATUS_ALIVE)) != (uint_n)(0));
-  if (!ANY(active)) return;
+  Paths paths = open_paths(frame, path_words);
   Path path = path_load(&paths, lanes.slot);
   HitLanes hit = load_hits(hits, lanes.slot, active);
   uint_n depth = word & (uint_n)(SUN_STATUS_DEPTH);
   uint_n kept = word & (uint_n)(SUN_STATUS_FIRST_HIT);
-  vec3 direction = make_vec3(path.direction_x, path.direction_y, path.direction_z);
-  vec3 throughput = make_vec3(path.throughput_r, path.throughput_g, path.throughput_b);
+  vec3 direction = path_direction(&path);
+  vec3 throughput = path_throughput(&path);
   SamplerKey key = path_key(frame, &path);
   at_moment(&opened, &key);  // before branches have numbers of their own: a tree of rays has one time
 #if SUN_BRANCHING
@@ -102,10 +99,7 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
   if (ANY(found)) {
     vec3 wo = negate3(direction);
     Surface surface = make_surface(scene, &hit, wo);
-    // Alpha: a coin that belongs to the triangle decides whether it is there for this path.
-    real alpha = surface_alpha(scene, &surface, found);
-    mask straight = found & (alpha < 1.0f);
-    if (ANY(straight)) straight = straight & (alpha <= hash_coin(&key, path.vertex, hit.instance, hit.primitive, 0));
+    mask straight = surface_absent(scene, &surface, &hit, &key, path.vertex, found);
     mask present = found & !straight;
     throughput = mul3(throughput, surface_absorption(scene, &surface, hit.t, present));
     arrived = throughput;
@@ -176,26 +170,13 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
       turned = scatters & !limited & scatter.valid & !scatter.straight;
       straight = straight | (scatters & scatter.valid & scatter.straight);
       throughput = select3(scatters & scatter.valid, mul3(throughput, scatter.weight), throughput);
-      path.origin_x = turned ? scatter.origin.x : path.origin_x;
-      path.origin_y = turned ? scatter.origin.y : path.origin_y;
-      path.origin_z = turned ? scatter.origin.z : path.origin_z;
-      path.direction_x = turned ? scatter.direction.x : path.direction_x;
-      path.direction_y = turned ? scatter.direction.y : path.direction_y;
-      path.direction_z = turned ? scatter.direction.z : path.direction_z;
-      path.pdf_solid_angle = turned ? scatter.pdf_solid_angle : path.pdf_solid_angle;
+      path_turn(&path, &scatter, turned);
     }
-    // Straight on: the same ray, strictly behind this hit.
-    path.passed_t = turned ? (real)(0.0f) : straight ? hit.t : path.passed_t;
-    path.passed_instance = turned ? (uint_n)(SUN_NONE) : straight ? hit.instance : path.passed_instance;
-    path.passed_primitive = turned ? (uint_n)(SUN_NONE) : straight ? hit.primitive : path.passed_primitive;
-    mask alive = turned | straight;
-    uint_n ended_word = (uint_n)(SUN_STATUS_ENDED) | (reason << (uint_n)(SUN_STATUS_ENDED_SHIFT));
-    uint_n found_word = (alive ? (uint_n)(SUN_STATUS_ALIVE) : ended_word) | (shadows << (uint_n)(SUN_STATUS_SHADOWS_SHIFT));
-    found_word = found_word | (shadows != (uint_n)(0) ? (uint_n)(SUN_STATUS_SHADOW) : (uint_n)(0));
-    found_word = found_word | (turned ? depth + (uint_n)(1) : depth);
+    path_pass(&path, &hit, turned, straight);
+    uint_n found_word = status_after(turned | straight, reason, shadows, turned ? depth + (uint_n)(1) : depth);
 #if SUN_PHOTONS
     phase = turned ? phase : (word & (uint_n)(SUN_STATUS_PHASE)) >> (uint_n)(SUN_STATUS_PHASE_SHIFT);
-    found_word = found_word | (alive ? phase << (uint_n)(SUN_STATUS_PHASE_SHIFT) : (uint_n)(0));
+    found_word = found_word | (turned | straight ? phase << (uint_n)(SUN_STATUS_PHASE_SHIFT) : (uint_n)(0));
 #endif
     next_word = found ? found_word | kept : next_word;
   }
@@ -211,9 +192,7 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
     vec3 worth = mul3(arrived, radiance);
     film_contribute_lanes(frame, &film, shines, &path, depth, worth);
   }
-  path.throughput_r = throughput.x;
-  path.throughput_g = throughput.y;
-  path.throughput_b = throughput.z;
+  path_set_throughput(&path, throughput);
   path.vertex = path.vertex + (uint_n)(1);
   path_store(&paths, lanes.slot, active, &path);
 #if SUN_BRANCHING

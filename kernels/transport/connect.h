@@ -68,10 +68,7 @@ SUN_FN Connection connect_emitter(const Scene *scene, const EyeVertex *z, const 
   return c;
 }
 
-SUN_FN vec3 meeting_origin(const Meeting *m, vec3 direction) {
-  real side = dot3(direction, m->normal) > 0.0f ? m->offset : -m->offset;
-  return add3(m->position, scale3(m->normal, side));
-}
+SUN_FN vec3 meeting_origin(const Meeting *m, vec3 direction) { return offset_origin(m->position, m->normal, m->offset, direction); }
 
 SUN_FN Connection connect_vertices(const Scene *scene, const EyeVertex *z, const Walk *walk, const LightVertex *y, mask active) {
   const SUN_GLOBAL Frame *frame = scene->frame;

@@ -48,17 +48,21 @@ SUN_FN vec3 hit_emission(const Scene *scene, const Surface *s, const HitLanes *h
   return scale3(emission, emission_weight(scene, depth, pdf_solid_angle, emitter_pdf(scene, s, hit, emits)));
 }
 
-// The same for a ray that leaves the scene.
+// Density by solid angle with which a shadow ray looks beyond the scene in this direction, by the chances of emitters; 0: never.
+SUN_FN real environment_emitter_pdf(const Scene *scene, vec3 direction) {
+  const SUN_GLOBAL Environment *environment = &scene->frame->environment;
+  if (environment->emitter == SUN_NONE) return (real)(0.0f);
+  return scene->emitters[environment->emitter].pmf * environment_pdf(environment, scene->environment_cdf, direction);
+}
+
+// hit_emission of a ray that leaves the scene.
 SUN_FN vec3 escaped_emission(const Scene *scene, vec3 direction, uint_n depth, real pdf_solid_angle, mask active) {
   vec3 black = splat3((real)(0.0f));
   const SUN_GLOBAL Environment *environment = &scene->frame->environment;
   if (environment->kind == SUN_ENVIRONMENT_NONE || !ANY(active)) return black;
   vec3 radiance = environment_radiance(environment, scene->environment_texels, direction);
-  real pdf = (real)(0.0f);
-  if (scene->frame->flags & SUN_FRAME_EFFECTS)
-    pdf = (real)(1.0f);  // shadow rays reach all of it, see direct.h
-  else if (environment->emitter != SUN_NONE)
-    pdf = scene->emitters[environment->emitter].pmf * environment_pdf(environment, scene->environment_cdf, direction);
+  real pdf = (real)(1.0f);  // of effects, whose shadow rays reach all of it, see direct.h
+  if (!(scene->frame->flags & SUN_FRAME_EFFECTS)) pdf = environment_emitter_pdf(scene, direction);
   return select3(active, scale3(radiance, emission_weight(scene, depth, pdf_solid_angle, pdf)), black);
 }
 

@@ -6,6 +6,7 @@
 #include "scene/surface.h"
 #include "shared/queues.h"
 #include "transport/direct.h"
+#include "transport/scatter.h"
 
 SUN_NAMESPACE_BEGIN
 
@@ -26,10 +27,6 @@ SUN_FN Lobes gathering_lobes(const SUN_GLOBAL Frame *frame, const Lobes *l) {
 // Sharp facets that are no deltas look at those photons that a path does not find: what mirrors and glass make of lights without extent.
 SUN_FN mask blurred_facets(const SUN_GLOBAL Frame *frame, const Lobes *l) {
   return frame->light_count > 0 ? sharp_facets(frame, l) & !l->delta_reflection : l->delta_reflection & !l->delta_reflection;
-}
-
-SUN_FN mask has_lobes(const Lobes *l) {
-  return l->pick_facets + l->pick_above + l->pick_below + l->pick_grazing_above + l->pick_grazing_below > 0.0f;
 }
 
 // The part that the next ray is drawn from, as `u_lobe` picks, which is made to fit. `sharp`: it goes on as a path; else the rays of gathering_lobes.

@@ -14,6 +14,10 @@ typedef struct Scatter {
   mask straight;         // a null event: same ray, strictly behind this hit; no depth, and the pdf before it is kept for weights
 } Scatter;
 
+SUN_FN mask has_lobes(const Lobes *l) {
+  return l->pick_facets + l->pick_above + l->pick_below + l->pick_grazing_above + l->pick_grazing_below > 0.0f;
+}
+
 // Draws what is no delta without a look at the lobes: evenly, or with a cosine, over the hemisphere of wo, or over both where light gets through. Deltas are
 // left to the lobes: smooth facets as often as these pick them, and a solid without refraction wholly.
 SUN_FN BsdfSample sample_shape(const Scene *scene, const Lobes *lobes, vec3 wo, real u_lobe, vec2 u, const BsdfSample *of_lobes) {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "support/render.h"
+#include "support/agree.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
 
@@ -29,33 +29,15 @@ void expect_agreement(const Case &scene, RenderSettings settings, const Work &wo
     settings.integrator = integrators[i];
     films[i] = render_seeds(scene, settings, i == 0 ? work.path_samples : work.pure_samples, seeds);
   }
-  std::vector<double> p;
-  std::vector<std::string> name;
-  for (unsigned depth = 0; depth <= settings.max_depth; depth++) {
-    const std::string layer = "bounce." + std::to_string(depth);
-    std::vector<Window> windows{whole(films[0][0])};
-    for (int y = 0; y + work.block <= settings.height; y += work.block)
-      for (int x = 0; x + work.block <= settings.width; x += work.block) windows.push_back({x, y, x + work.block, y + work.block});
-    for (const Window &window : windows)
-      for (int channel = 0; channel < 3; channel++) {
-        const std::vector<double> a = means(films[0], layer, window, channel), b = means(films[1], layer, window, channel);
-        p.push_back(welch(a, b));
-        name.push_back(layer + " at " + std::to_string(window.x0) + "," + std::to_string(window.y0) + (window.x1 - window.x0 > work.block ? " (whole)" : "") + " channel " + std::to_string(channel) + ": " +
-                       integrators[0] + " " + std::to_string(moments(a).mean) + ", " + integrators[1] + " " + std::to_string(moments(b).mean));
-      }
-  }
-  const std::vector<std::size_t> rejected = holm_rejected(p, false_alarms / tests_here);
-  std::string what;
-  for (std::size_t i = 0; i < rejected.size() && i < 12; i++) what += "\n  " + name[rejected[i]] + ", p = " + std::to_string(p[rejected[i]]);
-  EXPECT_TRUE(rejected.empty()) << rejected.size() << " of " << p.size() << " means differ:" << what;
+  const Agreement agree = agreement(films[0], films[1], bounces(0, settings.max_depth), work.block, false_alarms / tests_here);
+  EXPECT_EQ(agree.rejected, 0u) << integrators[0] << " and " << integrators[1] << ", of " << agree.means << " means:" << agree.what;
   // A test that sees nothing cannot fail: there has to be light at every depth, and noise small enough to tell 5 per cent.
   for (unsigned depth = 1; depth <= settings.max_depth; depth++) {
     const std::string layer = "bounce." + std::to_string(depth);
     for (int i = 0; i < 2; i++) {
-      const Moments m = moments(means(films[i], layer, whole(films[0][0]), 1));
-      EXPECT_GT(m.mean, 0) << layer;
+      EXPECT_GT(mean(films[i][0], layer, whole(films[i][0]), 1), 0) << layer;
       if (depth == 1) {
-        EXPECT_LT(std::sqrt(m.variance / seeds), 0.006 * m.mean) << layer << " of " << integrators[i] << " is too noisy";
+        EXPECT_LT(relative_error(films[i], layer), 0.006) << layer << " of " << integrators[i] << " is too noisy";
       }
     }
   }
@@ -143,17 +125,13 @@ TEST(Agree, LampOverGloss) {
 // shares.
 TEST(Agree, ShapesThatShine) {
   Scene scene;
-  const auto shape = [&](Shape::Kind kind, const Material &material, const glm::mat4x3 &transform) {
-    scene.materials.push_back(material);
-    scene.shapes.push_back({kind, "shape", static_cast<int>(scene.materials.size()) - 1, transform});
-  };
-  shape(Shape::Kind::plane, matt({0.7f, 0.6f, 0.5f}), scaled({1, 1, 1}, {0, 0, 0}));
-  shape(Shape::Kind::sphere, metal({0.9f, 0.8f, 0.7f}, 0.5f), scaled({0.4f, 0.4f, 0.4f}, {0, 0.4f, 0.3f}));
-  shape(Shape::Kind::sphere, lamp({2, 1.5f, 1}), scaled({0.5f, 0.8f, 0.3f}, {-1, 1, 0}));
-  shape(Shape::Kind::disk, lamp({1, 2, 3}), {{0.5f, 0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0, -0.7f}, {1.2f, 1.2f, 0}});
+  add_shape(scene, Shape::Kind::plane, matt({0.7f, 0.6f, 0.5f}), scaled({1, 1, 1}, {0, 0, 0}));
+  add_shape(scene, Shape::Kind::sphere, metal({0.9f, 0.8f, 0.7f}, 0.5f), scaled({0.4f, 0.4f, 0.4f}, {0, 0.4f, 0.3f}));
+  add_shape(scene, Shape::Kind::sphere, lamp({2, 1.5f, 1}), scaled({0.5f, 0.8f, 0.3f}, {-1, 1, 0}));
+  add_shape(scene, Shape::Kind::disk, lamp({1, 2, 3}), {{0.5f, 0.5f, 0}, {0.5f, -0.5f, 0}, {0, 0, -0.7f}, {1.2f, 1.2f, 0}});
   Material both = lamp({1.5f, 1.5f, 3});
   both.double_sided = true;
-  shape(Shape::Kind::quad, both, {{0.5f, 0, 0}, {0, 0.1f, 0.5f}, {0, 0.5f, -0.1f}, {0, 0.8f, -0.9f}});
+  add_shape(scene, Shape::Kind::quad, both, {{0.5f, 0, 0}, {0, 0.1f, 0.5f}, {0, 0.5f, -0.1f}, {0, 0.8f, -0.9f}});
   add_camera(scene, {0, 1.6f, 3.2f}, {0, 0.4f, 0}, 45);
   expect_agreement(Case(std::move(scene)), picture(48, 32, 3), {32, 64}, path_and_pure);
 }
@@ -165,31 +143,16 @@ struct Way {
   std::uint64_t samples;
 };
 
-// Films of `path` and of each way over the same seeds; p values of all blocks, bounces and channels.
+// Films of `path` and of each way over the same seeds.
 void expect_ways_agree(const Case &scene, const RenderSettings &settings, std::uint64_t path_samples, const std::vector<Way> &ways, bool expected = true) {
   const std::vector<Film> reference = render_seeds(scene, settings, path_samples, seeds);
   for (const Way &way : ways) {
     RenderSettings with = settings;
     way.set(with);
     const std::vector<Film> films = render_seeds(scene, with, way.samples, seeds);
-    std::vector<double> p;
-    std::vector<std::string> name;
-    for (unsigned depth = 0; depth <= settings.max_depth; depth++)
-      for (int y = 0; y + 8 <= settings.height; y += 8)
-        for (int x = 0; x + 8 <= settings.width; x += 8)
-          for (int channel = 0; channel < 3; channel++) {
-            const std::string layer = "bounce." + std::to_string(depth);
-            const std::vector<double> a = means(reference, layer, {x, y, x + 8, y + 8}, channel), b = means(films, layer, {x, y, x + 8, y + 8}, channel);
-            p.push_back(welch(a, b));
-            name.push_back(layer + " at " + std::to_string(x) + "," + std::to_string(y) + " channel " + std::to_string(channel) + ": " + std::to_string(moments(a).mean) + ", " +
-                           std::to_string(moments(b).mean));
-          }
-    const std::vector<std::size_t> rejected = holm_rejected(p, false_alarms / tests_here / static_cast<double>(ways.size()));
-    std::string what;
-    for (std::size_t i = 0; i < rejected.size() && i < 12; i++) what += "\n  " + name[rejected[i]] + ", p = " + std::to_string(p[rejected[i]]);
-    EXPECT_EQ(rejected.empty(), expected) << way.name << ": " << rejected.size() << " of " << p.size() << " means differ" << what;
-    const Moments m = moments(means(films, "bounce.1", whole(films[0]), 1));
-    EXPECT_LT(std::sqrt(m.variance / seeds), 0.02 * m.mean) << way.name << " is too noisy to tell";
+    const Agreement agree = agreement(reference, films, bounces(0, settings.max_depth), 8, false_alarms / tests_here / static_cast<double>(ways.size()));
+    EXPECT_EQ(agree.rejected == 0, expected) << way.name << ": " << agree.rejected << " of " << agree.means << " means differ" << agree.what;
+    EXPECT_LT(relative_error(films, "bounce.1"), 0.02) << way.name << " is too noisy to tell";
   }
 }
 

@@ -71,14 +71,7 @@ Scene moving_scene(bool punctual) {
   scene.shapes.push_back(ball);
   if (punctual) {
     add_point_light(scene, {-1.5f, 1.6f, 1.2f}, {2, 2.5f, 3});
-    Light spot;
-    spot.kind = Light::Kind::spot;
-    spot.position = {1.5f, 2.2f, 1.5f};
-    spot.direction = glm::normalize(glm::vec3(-0.5f, -0.7f, -0.6f));
-    spot.intensity = {6, 7, 8};
-    spot.inner_angle = 0.3f;
-    spot.outer_angle = 0.6f;
-    scene.lights.push_back(spot);
+    scene.lights.push_back(spot_light());
     for (unsigned key = 1; key <= steps; key++) {
       const float t = static_cast<float>(key) / steps;
       scene.lights[0].keys.push_back({{-1.5f + t, 1.6f + 0.3f * t, 1.2f}, {0, 0, -1}});

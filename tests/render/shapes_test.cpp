@@ -16,11 +16,6 @@ namespace {
 
 using Kind = Shape::Kind;
 
-void add_shape(Scene &scene, Kind kind, const Material &material, const glm::mat4x3 &transform) {
-  scene.materials.push_back(material);
-  scene.shapes.push_back({kind, "shape", static_cast<int>(scene.materials.size()) - 1, transform});
-}
-
 glm::mat4x3 turned(glm::vec3 scale, float angle, glm::vec3 at) {  // about z
   const float c = std::cos(angle), s = std::sin(angle);
   return {scale.x * glm::vec3(c, s, 0), scale.y * glm::vec3(-s, c, 0), glm::vec3(0, 0, scale.z), at};
@@ -67,16 +62,7 @@ TEST(Shapes, OneHashWhateverTheWays) {
     const Film reference = render(made, s, {0, 4}).film;
     EXPECT_EQ(reference.nan, 0u);
     EXPECT_GT(mean(reference, "beauty", whole(reference), 1), 0.1);
-    std::vector<std::pair<std::string, Ways>> all(8);
-    all[0] = {"binary", {}}, all[0].second.layout = Layout::binary;
-    all[1] = {"wide8", {}}, all[1].second.layout = Layout::wide8;
-    all[2] = {"lanes 1", {}}, all[2].second.lanes = 1;
-    all[3] = {"lanes 8", {}}, all[3].second.lanes = 8;
-    all[4] = {"pool 16", {}}, all[4].second.pool = 16;
-    all[5] = {"work-groups of 1", {}}, all[5].second.work_group = 1;
-    all[6] = {"trimmed", {}}, all[6].second.trimmed = true;
-    all[7] = {"columns", {}}, all[7].second.columns = true;
-    for (const auto &[how, ways] : all) EXPECT_EQ(film_hash(render(made, s, {0, 4}, ways).film).hex(), film_hash(reference).hex()) << integrator << ", " << how;
+    for (const auto &[how, ways] : other_ways()) EXPECT_EQ(film_hash(render(made, s, {0, 4}, ways).film).hex(), film_hash(reference).hex()) << integrator << ", " << how;
   }
 }
 

@@ -14,11 +14,6 @@ namespace {
 
 using Kind = Shape::Kind;
 
-void add_shape(Scene &scene, Kind kind, const Material &material, const glm::mat4x3 &transform) {
-  scene.materials.push_back(material);
-  scene.shapes.push_back({kind, "shape", static_cast<int>(scene.materials.size()) - 1, transform});
-}
-
 RenderSettings whitted(unsigned max_depth) {
   RenderSettings s = picture(4, 4, max_depth);
   s.integrator = "whitted";

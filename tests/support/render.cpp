@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "base/error.h"
 #include "flatten/camera.h"
 #include "import/import.h"
 #include "scene/default_view.h"
@@ -56,6 +57,19 @@ Renderer renderer_of(const Case &scene, const RenderSettings &settings, const Wa
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, Ways>> other_ways() {
+  std::vector<std::pair<std::string, Ways>> all(8);
+  all[0] = {"binary", {}}, all[0].second.layout = Layout::binary;
+  all[1] = {"wide8", {}}, all[1].second.layout = Layout::wide8;
+  all[2] = {"lanes 1", {}}, all[2].second.lanes = 1;
+  all[3] = {"lanes 8", {}}, all[3].second.lanes = 8;
+  all[4] = {"pool 16", {}}, all[4].second.pool = 16;
+  all[5] = {"work-groups of 1", {}}, all[5].second.work_group = 1;
+  all[6] = {"trimmed", {}}, all[6].second.trimmed = true;
+  all[7] = {"columns", {}}, all[7].second.columns = true;
+  return all;
+}
 
 const Device &test_device(std::size_t work_group) {
   auto &devices = kept().devices;
@@ -125,6 +139,15 @@ std::array<std::vector<std::int64_t>, 2> render_twice(const Case &scene, const R
     counts = again.save().counts;
   } while (counts[SUN_COUNT_LIVE] != 0 || counts[SUN_COUNT_NEXT_PATH] < counts[SUN_COUNT_PATHS]);
   return {first, again.film()};
+}
+
+std::string refusal(const Case &scene, const RenderSettings &settings) {
+  try {
+    render(scene, settings, {0, 1});
+  } catch (const UsageError &error) {
+    return error.place;
+  }
+  return "";
 }
 
 std::vector<Film> render_seeds(const Case &scene, RenderSettings settings, std::uint64_t samples, std::uint32_t seeds, const Ways &ways) {

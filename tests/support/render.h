@@ -25,6 +25,9 @@ struct Ways {
   bool trimmed = false;  // code that the scene does not need is left out, as the command does; otherwise one set of programs serves all scenes
 };
 
+// One thing each that is another than in Ways{}, by name.
+std::vector<std::pair<std::string, Ways>> other_ways();
+
 // The device of all tests of this process: $SUNSTONE_TEST_DEVICE, or what the command would choose. Opened once for each work-group size.
 const Device &test_device(std::size_t work_group = 0);
 
@@ -56,6 +59,9 @@ Rendered render(const Case &scene, const RenderSettings &settings, SampleRange s
 
 // A sample, twice by one renderer and each time into a new film: the integers of both, layer by layer.
 std::array<std::vector<std::int64_t>, 2> render_twice(const Case &scene, const RenderSettings &settings, std::uint64_t sample);
+
+// What of the settings a renderer refuses, as a UsageError names it; empty where it renders.
+std::string refusal(const Case &scene, const RenderSettings &settings);
 
 // One film a seed, from 1 on, with the independent sampler.
 std::vector<Film> render_seeds(const Case &scene, RenderSettings settings, std::uint64_t samples, std::uint32_t seeds, const Ways &ways = {});

@@ -125,11 +125,35 @@ void place(Scene &scene, int mesh, const glm::mat4x3 &transform) {
   scene.instances.push_back(instance);
 }
 
+void add_shape(Scene &scene, Shape::Kind kind, const Material &material, const glm::mat4x3 &transform) {
+  scene.materials.push_back(material);
+  scene.shapes.push_back({kind, "shape", static_cast<int>(scene.materials.size()) - 1, transform});
+}
+
 void add_point_light(Scene &scene, glm::vec3 position, glm::vec3 intensity) {
   Light light;
   light.position = position;
   light.intensity = intensity;
   scene.lights.push_back(light);
+}
+
+Light spot_light(glm::vec3 position) {
+  Light spot;
+  spot.kind = Light::Kind::spot;
+  spot.position = position;
+  spot.direction = glm::normalize(glm::vec3(-0.5f, -0.7f, -0.6f));
+  spot.intensity = {6, 7, 8};
+  spot.inner_angle = 0.3f;
+  spot.outer_angle = 0.6f;
+  return spot;
+}
+
+Light sun_light() {
+  Light sun;
+  sun.kind = Light::Kind::directional;
+  sun.direction = glm::normalize(glm::vec3(-0.3f, -1, -0.4f));
+  sun.intensity = {1.0f, 0.9f, 0.8f};
+  return sun;
 }
 
 void add_camera(Scene &scene, glm::vec3 from, glm::vec3 at, float yfov_degrees) {
@@ -225,6 +249,15 @@ TextureUse use_picture(Scene &scene, Image image, bool linear) {
   TextureUse use;
   use.texture = static_cast<int>(scene.textures.size()) - 1;
   return use;
+}
+
+Scene matt_room() {
+  Scene scene;
+  add(scene, box({-1, 0, -1}, {1, 1.6f, 1}, true), matt({0.7f, 0.6f, 0.5f}));
+  add(scene, quad({0, 1.5f, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}), lamp({3, 4, 5}));
+  add(scene, box({-0.5f, 0.01f, -0.6f}, {0, 0.5f, -0.1f}), matt({0.4f, 0.6f, 0.8f}));
+  add_camera(scene, {0, 0.8f, 0.95f}, {0, 0.6f, 0}, 70);
+  return scene;
 }
 
 Scene everything() {

@@ -24,7 +24,10 @@ Primitive sphere(glm::vec3 center, float radius, int rings = 16);           // s
 int add(Scene &scene, Primitive primitive, const Material &material, const glm::mat4x3 &transform = glm::mat4x3(1));
 // Places a mesh once more.
 void place(Scene &scene, int mesh, const glm::mat4x3 &transform);
+void add_shape(Scene &scene, Shape::Kind kind, const Material &material, const glm::mat4x3 &transform);
 void add_point_light(Scene &scene, glm::vec3 position, glm::vec3 intensity);
+Light spot_light(glm::vec3 position = {1.5f, 2.2f, 1.5f});  // down to the left and away from the camera
+Light sun_light();
 void add_camera(Scene &scene, glm::vec3 from, glm::vec3 at, float yfov_degrees);
 // Looks along -z from above a plane: x to the right, y up.
 void add_flat_camera(Scene &scene, glm::vec3 from, float half_height);
@@ -38,6 +41,9 @@ Image pattern(int width, int height, int channels, std::uint32_t seed);
 Image bumps(int width, int height);  // a normal map
 Image sky_map(int width, int height, glm::vec3 sun);
 TextureUse use_picture(Scene &scene, Image image, bool linear = true);
+
+// Matt walls, so that every strategy of bidirectional methods finds every path, and a lamp that is large enough to be met by chance.
+Scene matt_room();
 
 // Everything at once, small: textures, normal map, alpha of both kinds, solid, rough and thin glass, metal, instances (one mirrored), punctual lights, an
 // emissive triangle mesh with a texture, a sky map.
