@@ -76,7 +76,8 @@ SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, con
     BsdfEval eval = side_eval(scene, &side, photon.to_light);
     mask unseen = some & blurred & photon.unseen;
     if (ANY(unseen)) eval.f_cos = add3(eval.f_cos, select3(unseen, side_eval(scene, &facets, photon.to_light).f_cos, splat3((real)(0.0f))));
-    // f cos counts the shading normals' cosine, flux the true one: both walks see the same surface, see transport/both_ways.h.
+    // f cos counts the shading normals' cosine here, flux the true one where the photon arrived: so its own normal, as the density that brought it there has it
+    // [Georgiev12], though that is unbounded at grazing light. By the normal here it would be bounded, and wrong where facets meet: Photons.ABallLitFromTheSide.
     real weight = (1.0f - dot3(to, to) / (map.radius * map.radius)) / max_real(fabs(dot3(photon.to_light, photon.at.normal)), (real)(SUN_LEAST_COSINE)) / photon.presence;
     if (SUN_MERGING) {
       real from_light = earlier_than_merging(frame, photon.dVCM, photon.dVM, eval.pdf);

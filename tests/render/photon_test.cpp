@@ -166,6 +166,31 @@ TEST(Photons, SppmUnderEachLight) {
 // Glass, rough glass, thin glass, alpha of both kinds, textures and normal maps, instances (one mirrored), and every kind of light at once.
 TEST(Photons, SppmWithEverything) { expect_sppm(Case(everything()), picture(24, 16, 4), 32, "bdpt", 64, 0.05, 0.03f, 0.12, 8192); }
 
+// A coarse ball with smooth normals, lit from the side by a spot light that a mirror turns to it, or by the spot light's image alone. The true normals of a photon and of
+// the place that looks at it differ: flux is of the area where the photon arrived, so its own true normal turns it into light; by that of the other place the ball would
+// be 3 per cent too bright, and its pixels 10 per cent off.
+TEST(Photons, ABallLitFromTheSide) {
+  const auto ball = [](bool mirrored) {
+    Scene scene;
+    add(scene, sphere({0, 0, 0}, 1, 8), matt({0.8f, 0.8f, 0.8f}));
+    Light spot = spot_light({mirrored ? -1.0f : -3.0f, 1.5f, 1});
+    spot.direction = glm::normalize(glm::vec3(mirrored ? -3 : 3, -1.5f, -1));
+    spot.inner_angle = 0.33f;  // the ball is 0.29 in half
+    spot.outer_angle = 0.36f;
+    scene.lights.push_back(spot);
+    if (mirrored) add(scene, quad({-2, 0, 0}, {0, 0, -3}, {0, 3, 0}), metal({1, 1, 1}, 0));
+    add_flat_camera(scene, {0, 0, 5}, 1);
+    return scene;
+  };
+  RenderSettings s = picture(24, 24, 2);
+  s.filter = box_filter();
+  const std::vector<Film> films = render_seeds(Case(ball(true)), sppm(s, 16384, 0.1f), 8, seeds), reference = render_seeds(Case(ball(false)), s, 64, seeds);
+  const Mean a = mean_of(films, "beauty", whole(films[0]), 1), b = mean_of(reference, "beauty", whole(reference[0]), 1);
+  EXPECT_NEAR(a.value / b.value, 1, 0.01);
+  EXPECT_LT(std::hypot(a.error, b.error), 0.003 * b.value) << "too noisy to tell";
+  EXPECT_LT(distance(films, reference, "beauty", 2), 0.05);
+}
+
 // A veil that is there by chance, in front of a wall: photons on it have tossed its coin, and so have the paths that look at them.
 TEST(Photons, Veil) {
   Scene scene;
