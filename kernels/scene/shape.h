@@ -97,10 +97,10 @@ SUN_INLINE void rays_in_shape(const SUN_GLOBAL Instance *instance, const ShapeRa
   }
 }
 
-// The nearest hit of a shape that counts, in the lanes of `on`. origin, direction: the rays in its space.
-SUN_INLINE ShapeHit meet_shape(const SUN_GLOBAL Instance *instance, uint primitive, vec3 origin, vec3 direction, ShapeRays *rays, const ShapeSearch *search, mask on) {
+// The nearest hit of a shape that counts, in the lanes of `on`. origin, direction: the rays in its space. Rays of light subpaths meet both sides (SUN_WANT_BOTH_SIDES).
+SUN_INLINE ShapeHit meet_shape(const SUN_GLOBAL Instance *instance, uint primitive, vec3 origin, vec3 direction, ShapeRays *rays, const ShapeSearch *search, mask on, int both_sides) {
   const uint flags = instance->flags;
-  const int single_sided = (flags & SUN_INSTANCE_SINGLE_SIDED) != 0;
+  const int single_sided = !both_sides && (flags & SUN_INSTANCE_SINGLE_SIDED) != 0;
   ShapeHit hit;
   hit.t = (real)(0.0f);
   hit.place = splat3((real)(0.0f));
@@ -186,7 +186,7 @@ SUN_INLINE int search_shape(const TraceScene *scene, uint number, const Ray *ray
   } else {
     rays_in_shape(instance, &rays, &origin, &direction);
   }
-  const ShapeHit hit = meet_shape(instance, primitive, origin, direction, &rays, &wanted, on);
+  const ShapeHit hit = meet_shape(instance, primitive, origin, direction, &rays, &wanted, on, SUN_BIDIRECTIONAL && search->want == SUN_WANT_BOTH_SIDES);
   if (!FIRST_LANE(hit.counts)) return 0;
   const mask sphere = (uint_n)(flags & SUN_INSTANCE_SPHERE) != (uint_n)(0);
   const vec2 uv = place_code(sphere, hit.place);

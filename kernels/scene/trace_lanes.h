@@ -164,7 +164,7 @@ SUN_FN HitLanes closest_shapes(const SUN_GLOBAL Frame *frame, const TraceScene *
     search.first_primitive = first_primitive_in(number, rays);
     vec3 origin, direction;
     rays_in_shape(instance, &ray, &origin, &direction);
-    const ShapeHit met = meet_shape(instance, primitive, origin, direction, &ray, &search, on);
+    const ShapeHit met = meet_shape(instance, primitive, origin, direction, &ray, &search, on, 0);
     if (!ANY(met.counts)) continue;
     search.best_t = met.counts ? met.t : search.best_t;
     place = select3(met.counts, met.place, place);
@@ -194,7 +194,7 @@ SUN_FN mask blocked_by_shapes(const SUN_GLOBAL Frame *frame, const TraceScene *t
     search.first_primitive = first_primitive_in(number, rays);
     vec3 origin, direction;
     rays_in_shape(instance, &ray, &origin, &direction);
-    const ShapeHit met = meet_shape(instance, tree->roots[number], origin, direction, &ray, &search, on);
+    const ShapeHit met = meet_shape(instance, tree->roots[number], origin, direction, &ray, &search, on, 0);
     blocked = blocked | met.counts;
     on = on & !met.counts;
   }

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "scene/validate.h"
+#include "support/agree.h"
 #include "support/render.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
@@ -123,6 +124,29 @@ TEST(Shapes, LampsOverAPlane) {
       const Moments m = moments(means(films, "bounce.1", whole(films[0]), 1));
       EXPECT_LT(interval(m, 1e-9), 0.04 * m.mean) << integrator << ", shape " << static_cast<int>(kind) << " is too noisy to tell";
     }
+}
+
+// Shapes of one side are passed from behind by eyes, so light passes them from the front and is stopped behind: a ball casts its shadow by light subpaths as it does by shadow
+// rays, and so do a disk and a quad whose fronts are towards the floor.
+TEST(Shapes, OfOneSideCastShadowsOfLight) {
+  Scene scene;
+  add_shape(scene, Kind::plane, matt({0.7f, 0.6f, 0.5f}), glm::mat4x3(1));
+  Material one_sided = matt({0.2f, 0.4f, 0.6f});
+  one_sided.double_sided = false;
+  add_shape(scene, Kind::sphere, one_sided, scaled({0.4f, 0.4f, 0.4f}, {0.2f, 0.4f, 0.1f}));
+  add_shape(scene, Kind::disk, one_sided, turned({0.3f, 0.3f, 0.3f}, 3.14159265f, {-0.6f, 0.3f, -0.2f}));
+  add_shape(scene, Kind::quad, one_sided, turned({0.3f, 0.3f, 0.3f}, 3.14159265f, {-0.4f, 0.2f, 0.6f}));
+  add_shape(scene, Kind::quad, lamp({20, 18, 16}), turned({0.2f, 0.2f, 0.2f}, 3.14159265f, {0, 2, 0}));
+  add_camera(scene, {0, 1.9f, 2.2f}, {-0.1f, 0, 0.1f}, 40);
+  const Case made(std::move(scene));
+  RenderSettings s = picture(24, 16, 3);
+  const std::vector<Film> reference = render_seeds(made, s, 64, 24);
+  s.integrator = "bdpt";
+  const Agreement weighted = agreement(reference, render_seeds(made, s, 48, 24), bounces(0, 3), 8, 1e-8);
+  EXPECT_EQ(weighted.rejected, 0u) << "of " << weighted.means << " means:" << weighted.what;
+  s.strategy_s = 2, s.strategy_t = 1, s.unweighted = true;  // what light subpaths alone make of direct light
+  const Agreement alone = agreement(reference, render_seeds(made, s, 96, 24), {"bounce.1"}, 4, 1e-8);
+  EXPECT_EQ(alone.rejected, 0u) << "of " << alone.means << " means:" << alone.what;
 }
 
 // Shadow rays leave a plane and reach a lamp that touches it; a far plane that the camera grazes casts no shadow on itself.
