@@ -133,15 +133,15 @@ std::string draw_convergence(Easel &easel) {
   page.plot(easel.keep_plot("convergence.svg", line_plot("Error by samples a pixel", {"samples a pixel", true}, {"RMSE", true},
                                                          {{"independent", independent.samples, independent.rmse},
                                                           {"Sobol' (Owen-scrambled)", sobol.samples, sobol.rmse},
-                                                          fitted(fmt::format("slope {:.3f}", independent.fit.slope), independent),
-                                                          fitted(fmt::format("slope {:.3f}", sobol.fit.slope), sobol)})));
+                                                          fitted("slope " + show_number(independent.fit.slope, 3), independent),
+                                                          fitted("slope " + show_number(sobol.fit.slope, 3), sobol)})));
   page.text("The mean of n independent samples has 1/n of one sample's variance, so its standard deviation falls as n to the power −1/2, whatever the scene: four times the work for half the noise. Nothing that "
             "improves a single sample changes that slope; it moves the line down. Points that cover the space of random numbers evenly can fall faster, where the integrand is smooth: here it has edges (the "
             "light's outline, shadows) in many dimensions, so the gain is real and stays short of the −1 or −1.5 of smooth integrands in few dimensions.");
   page.text(fmt::format("How it was measured: {0} × {0} pixels with a box filter, so pixels share no sample; depth {1}; RMSE over pixels and channels. The curve is of one render whose film is looked at on the "
                         "way: films add, so sample n is never rendered twice. Slopes are least-squares lines through the powers of two, in logarithms, with the standard error of their residuals.",
                         side, depth));
-  page.text(fmt::format("The reference is no longer render of the same kind but a better one: `--integrator path`, which samples the light and weights (other tests hold both to the same expectation), {} × {} samples "
+  page.text(fmt::format("The reference is not more of the same but another way to the same picture: `--integrator path`, which samples the light and weights (other tests hold both to the same expectation), {} × {} samples "
                         "a pixel. The spread of its {} seeds puts its own RMSE at {}, {:.0f} times below the smallest error on the plot{}.",
                         seeds, show_number(static_cast<double>(reference_samples), 6), seeds, show_number(reference_error, 2), std::min(independent.rmse.back(), sobol.rmse.back()) / reference_error,
                         std::min(independent.rmse.back(), sobol.rmse.back()) > 4 * reference_error ? "" : ": too near for the last points to be trusted"));

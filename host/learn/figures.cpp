@@ -14,14 +14,14 @@ std::string Easel::keep_plot(const std::string &name, const std::string &svg) co
 std::span<const Figure> figures() {
   static const Figure table[] = {
       {"bounces", "Zero bounces, one bounce, five", "a mesh under a sky: what each bounce adds", 20, draw_bounces},
-      {"l1-l2", "The path from l1 to l2", "light that Whitted's ray tracing cannot find, and how much of the picture it is", 25, draw_l1_l2},
-      {"convergence", "From 1 to 100 000 samples", "an area light at growing sample counts, the error curve and its slope, independent and Sobol'", 420, draw_convergence},
-      {"light-sampling", "With and without light sampling", "pure, hybrid and path at equal time, with error maps", 60, draw_light_sampling},
-      {"depth", "What each depth contributes", "radiance and rays by depth, and the closed furnace whose series is known", 40, draw_depth},
-      {"branching", "The argument against branching", "trees of rays and paths at equal numbers of rays: rays and light by depth, variance", 90, draw_branching},
-      {"pseudo-code", "The pseudo-code against pure path tracing", "each deviation alone: means, variances, rays; and the classic mistake", 120, draw_pseudo_code},
-      {"strategies", "The strategies of bidirectional path tracing", "each way to join a path from the eye and one from a light, alone and weighted", 90, draw_strategies},
-      {"history", "From Whitted to photon maps", "one room by each method of the history at equal time, with error maps", 200, draw_history},
+      {"l1-l2", "The path from l1 to l2", "light that Whitted's ray tracing cannot find, and how much of the picture it is", 30, draw_l1_l2},
+      {"convergence", "From 1 to 100 000 samples", "an area light at growing sample counts, the error curve and its slope, independent and Sobol'", 215, draw_convergence},
+      {"light-sampling", "With and without light sampling", "pure, hybrid and path at equal time, with error maps", 100, draw_light_sampling},
+      {"depth", "What each depth contributes", "radiance and rays by depth, and the closed furnace whose series is known", 12, draw_depth},
+      {"branching", "The argument against branching", "trees of rays and paths at equal numbers of rays: rays and light by depth, variance", 115, draw_branching},
+      {"pseudo-code", "The pseudo-code against pure path tracing", "each deviation alone: means, variances, rays; and the classic mistake", 60, draw_pseudo_code},
+      {"strategies", "The strategies of bidirectional path tracing", "each way to join a path from the eye and one from a light, alone and weighted", 60, draw_strategies},
+      {"history", "From Whitted to photon maps", "one room by each method of the history at equal time, with error maps", 180, draw_history},
       {"paths", "The paths of one pixel", "every vertex drawn over the picture and in a table, with pdf, throughput and contribution", 20, draw_paths},
   };
   return table;

@@ -18,36 +18,50 @@ constexpr const char *style =
     "@media(prefers-color-scheme:dark){:root{--paper:#181a1b;--ink:#e4e4e0;--faint:#a0a09a;--line:#3a3d3f;--shade:#232628}}"
     "body{background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,sans-serif;max-width:64rem;margin:2rem auto;padding:0 1rem}"
     "h1{line-height:1.2;margin-bottom:.3rem}h2{margin-top:2.2rem}.lead{color:var(--faint);font-size:1.1rem;margin-top:0}"
-    "code,pre{background:var(--shade);border-radius:3px;font:.9em ui-monospace,monospace}code{padding:.1em .3em}pre{padding:.6em .9em;overflow-x:auto}"
-    ".row{display:grid;grid-template-columns:repeat(auto-fit,minmax(14rem,1fr));gap:1rem;margin:1rem 0}.row figure{max-width:32rem}figure{margin:0}"
+    "code,pre{background:var(--shade);border-radius:3px;font:.9em ui-monospace,monospace}code{padding:.1em .3em}pre{padding:.6em .9em;white-space:pre-wrap;overflow-wrap:anywhere}"
+    ".row{display:grid;grid-template-columns:repeat(auto-fit,minmax(max(9rem,calc((100% - (var(--n) - 1)*1rem)/var(--n) - .1px)),1fr));gap:1rem;margin:1rem 0}.row figure{max-width:32rem}figure{margin:0}"
     "figure img{width:100%;image-rendering:pixelated;border:1px solid var(--line);display:block}figcaption{color:var(--faint);font-size:.9rem;margin-top:.3rem}"
     ".wide{overflow-x:auto;margin:1rem 0}table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem}"
-    "th,td{border-bottom:1px solid var(--line);padding:.3rem .7rem;text-align:right;vertical-align:top}th:first-child,td:first-child{text-align:left}"
+    "th,td{border-bottom:1px solid var(--line);padding:.3rem .7rem;text-align:right;vertical-align:top}th:first-child,td:first-child,.words{text-align:left}td code{white-space:nowrap}"
     "thead th{border-bottom:2px solid var(--line)}svg{max-width:100%;height:auto}.plot{max-width:45rem;display:block}"
     "details{margin:.6rem 0;border:1px solid var(--line);border-radius:4px;padding:.4rem .8rem}summary{cursor:pointer}a{color:inherit}";
 
-// Plain text to HTML: markup escaped, `code` marked.
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Plain text to HTML: markup escaped, `code` marked, and outside of it the hyphen of a negative number made a minus sign.
 std::string marked(const std::string &text) {
   std::string result;
   bool code = false;
-  for (const char c : escaped(text)) {
-    if (c != '`') {
-      result += c;
-      continue;
+  const std::string plain = escaped(text);
+  for (std::size_t i = 0; i < plain.size(); i++) {
+    if (plain[i] == '`') {
+      result += code ? "</code>" : "<code>";
+      code = !code;
+    } else if (!code && plain[i] == '-' && i + 1 < plain.size() && is_digit(plain[i + 1]) && (i == 0 || plain[i - 1] == ' ' || plain[i - 1] == '(')) {
+      result += "−";
+    } else {
+      result += plain[i];
     }
-    result += code ? "</code>" : "<code>";
-    code = !code;
   }
   return code ? result + "</code>" : result;
 }
 
-std::string cells(const std::vector<std::string> &row, const char *tag) {
-  std::string text = "<tr>";
-  for (const std::string &cell : row) text += fmt::format("<{0}>{1}</{0}>", tag, marked(cell));
-  return text + "</tr>\n";
+// Numbers stand under each other by their last digits, words by their first letters.
+bool holds_words(const Table &table, std::size_t column) {
+  std::size_t numbers = 0, words = 0;
+  for (const std::vector<std::string> &row : table.rows)
+    if (!row[column].empty()) (is_digit(row[column][0]) || is_digit(row[column].back()) ? numbers : words)++;
+  return words > numbers;
 }
 
 std::string html_of(const Table &table) {
+  std::vector<const char *> kinds;
+  for (std::size_t i = 0; i < table.columns.size(); i++) kinds.push_back(i > 0 && holds_words(table, i) ? " class='words'" : "");
+  const auto cells = [&](const std::vector<std::string> &row, const char *tag) {
+    std::string text = "<tr>";
+    for (std::size_t i = 0; i < row.size(); i++) text += fmt::format("<{0}{1}>{2}</{0}>", tag, kinds[i], marked(row[i]));
+    return text + "</tr>\n";
+  };
   std::string text = "<div class='wide'><table>\n<thead>" + cells(table.columns, "th") + "</thead>\n<tbody>";
   for (const std::vector<std::string> &row : table.rows) text += cells(row, "td");
   return text + "</tbody></table></div>\n";
@@ -103,8 +117,10 @@ void Page::link(const std::string &address, const std::string &name, const std::
   body_ += fmt::format("<p><a href='{}'><strong>{}</strong></a>. {}</p>\n", escaped(address), escaped(name), marked(text));
 }
 
-void Page::pictures(const std::vector<Picture> &row) {
-  body_ += "<div class='row'>\n";
+void Page::pictures(const std::vector<Picture> &row, std::size_t abreast) {
+  // As few rows as there can be, and those of about the same length.
+  const std::size_t count = std::max<std::size_t>(row.size(), 1), rows = (count + abreast - 1) / abreast;
+  body_ += fmt::format("<div class='row' style='--n:{}'>\n", (count + rows - 1) / rows);
   for (const Picture &picture : row)
     body_ += fmt::format("<figure><img alt='{}' src='{}'><figcaption>{}</figcaption></figure>\n", escaped(picture.caption), data_uri(picture.file), marked(picture.caption));
   body_ += "</div>\n";

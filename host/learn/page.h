@@ -27,7 +27,7 @@ class Page {
   void heading(const std::string &text);
   void text(const std::string &paragraph);          // plain text: what is markup is escaped; `code` between backquotes
   void command(const std::string &line);            // that gives the same elsewhere
-  void pictures(const std::vector<Picture> &row);   // side by side where there is room, pixels unsmoothed
+  void pictures(const std::vector<Picture> &row, std::size_t abreast = 4);  // side by side where there is room, at most `abreast`; pixels unsmoothed
   void plot(const std::string &svg);                // by plot.h
   void table(const Table &table);
   void folded(const std::string &summary, const Table &table);  // to be opened by the reader

@@ -158,7 +158,7 @@ std::string draw_paths(Easel &easel) {
   } else {
     const int side = easel.size(256, 32);
     shot = {"cornell/cornell.gltf", "", figure_settings(side, side, "path", 8)};
-    x = side * 5 / 8, y = side * 7 / 8;
+    x = side * 3 / 8, y = side * 29 / 32;  // on the floor
   }
   const SampleRange samples = easel.asked ? easel.asked->samples : SampleRange{0, 8};
   const int width = shot.settings.width, height = shot.settings.height;
@@ -208,7 +208,8 @@ std::string draw_paths(Easel &easel) {
 
   const std::string finding = fmt::format("Pixel ({}, {}): {} paths of `{}` with {:.1f} vertices each, {} of which brought light; their mean is {}.", x, y, traced.paths.size(), shot.settings.integrator,
                                           static_cast<double>(vertices) / static_cast<double>(traced.paths.size()), lit, show(sum));
-  Page page(fmt::format("The paths of pixel ({}, {})", x, y), scene.line);
+  // A scene of the program's own by its name there, wherever the program is.
+  Page page(fmt::format("The paths of pixel ({}, {})", x, y), shot.scene.empty() ? scene.line : "scenes/" + shot.scene + scene.line.substr(scene.line.rfind(": ")));
   page.drawing(drawing, "Every path begins at the pixel with the white frame. Discs are hits, hollow ones where the path went on by mirror, smooth glass or straight; yellow squares are lights that a path ran into; a line without an end left the scene.");
   page.text(finding + " Read off the renderer's own stages, run one at a time on a pool with one path: what is below are the numbers that the picture is made of, and their sum is the renderer's own integers for these samples.");
   page.text("`pdf` is the density of the direction that led to a vertex, per steradian, `delta` where a mirror or smooth glass left no choice. `throughput` is what light arriving there is worth at the camera. `shines` is what the vertex "

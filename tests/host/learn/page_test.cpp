@@ -50,6 +50,25 @@ TEST(Page, StandsAloneAndEscapes) {
   for (const char *word : {"http", "//", "<script", "<link", "@import"}) EXPECT_EQ(text.find(word), std::string::npos) << word;
 }
 
+// Numbers end under each other and words begin so; a negative number has a minus sign, a flag its hyphens; pictures stand in rows of about the same length.
+TEST(Page, ReadsWell) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "dot.png") << "not looked into";
+  const Picture dot{folder / "dot.png", "dot"};
+  Page page("t", "from -1.5 to (-2), `-3` and --flag");
+  page.table({{"a", "number", "word", "flag"}, {{"x", "-0.5", "left", "`--f 1`"}, {"y", "+2", "right 3 way", "`--g 2`"}}});
+  page.pictures({dot, dot, dot, dot, dot});
+  page.pictures({dot, dot, dot, dot, dot}, 5);
+  page.pictures({dot, dot});
+  page.write(folder / "page.html");
+  const std::string text = read(folder / "page.html");
+  EXPECT_NE(text.find("from −1.5 to (−2), <code>-3</code> and --flag"), std::string::npos) << text;
+  EXPECT_NE(text.find("<th>number</th><th class='words'>word</th><th class='words'>flag</th>"), std::string::npos) << text;
+  EXPECT_NE(text.find("<td>−0.5</td><td class='words'>left</td><td class='words'><code>--f 1</code></td>"), std::string::npos) << text;
+  const std::size_t three = text.find("--n:3'"), five = text.find("--n:5'"), two = text.find("--n:2'");
+  EXPECT_TRUE(three < five && five < two && two != std::string::npos) << "rows of three and two, of five, of two";
+}
+
 TEST(Page, CsvQuotesWhatNeedsIt) {
   const test::TemporaryFolder folder;
   write_csv(folder / "a.csv", {{"x", "says, \"so\""}, {{"1", "plain"}, {"2", "two\nlines"}}});
