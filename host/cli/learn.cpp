@@ -13,6 +13,7 @@
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/session.h"
+#include "pipeline/plan.h"
 
 namespace sunstone {
 
@@ -45,6 +46,9 @@ RenderOptions scene_options(const Options &o, const Shot &shot) {
 Easel::Asked read_paths(Options &o) {
   const std::vector<float> at = parse_numbers("--pixel", o.pixel, 2);
   RenderSettings settings = render_settings(o.render);
+  const Plan &plan = integrator(settings.integrator);
+  if (plan.effects || plan.bidirectional || !plan.light_walk.empty() || plan.walk.size() == 1)
+    throw UsageError("--integrator " + plan.name, "walks more than one path from the eye: a tree of rays, or light subpaths beside it, and single paths are shown", "use path, pure or hybrid");
   if (settings.indirect_samples > 1) throw UsageError("--indirect-samples", "makes trees, and single paths are shown", "sunstone learn branching compares trees and paths");
   const int x = static_cast<int>(at[0]), y = static_cast<int>(at[1]);
   if (static_cast<float>(x) != at[0] || static_cast<float>(y) != at[1] || x < 0 || y < 0 || x >= settings.width || y >= settings.height)

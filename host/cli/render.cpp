@@ -2,6 +2,7 @@
 // sunstone render: a scene becomes pictures.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -177,11 +178,20 @@ void Render::compile() {
   progress_.end_bar();
 }
 
+// Is there light that shadow rays cannot find, as solid glass bends it, and paths cannot, as its source is a point or a direction?
+static bool glass_under_points(const Scene &scene) {
+  return !scene.lights.empty() && std::ranges::any_of(scene.materials, [](const Material &m) { return m.transmission > 0 && m.volume && m.roughness * m.roughness < 1e-3f; });  // SUN_ALPHA_SMOOTH
+}
+
 void Render::open() {
   session_ = open_session(o_, settings_, notices_);
   progress_.line(session_.device.info().description());
   progress_.line(session_.loaded.line);
-  if (const Plan &plan = integrator(settings_.integrator); !plan.leaves_out.empty()) notices_.note("--integrator " + plan.name, "leaves out " + plan.leaves_out);
+  const Plan &plan = integrator(settings_.integrator);
+  if (!plan.leaves_out.empty())
+    notices_.note("--integrator " + plan.name, "leaves out " + plan.leaves_out);
+  else if (!plan.bidirectional && plan.light_walk.empty() && glass_under_points(session_.loaded.scene))
+    notices_.note("--integrator " + plan.name, "leaves out what smooth glass gathers of lights without extent, which no path from the eye meets; --integrator sppm and --integrator vcm follow it");
   compile();
   const SelfTestResult self_test = cached_self_test(session_.device);
   reproducible_ = self_test.reproducible ? "yes" : "no";

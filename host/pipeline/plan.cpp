@@ -130,7 +130,8 @@ void check_branching(const RenderSettings &settings) {
     throw UsageError(place, "is from 1 to " + std::to_string(SUN_MOST_INDIRECT_SAMPLES));
   if (settings.indirect_samples == 1) return;
   // Rays of a sample as they are expected where nothing but the fixed chance ends them, and every vertex has every effect.
-  const unsigned children = settings.indirect_samples * (integrator(settings.integrator).effects ? 2 : 1);
+  const bool effects = integrator(settings.integrator).effects;
+  const unsigned children = settings.indirect_samples * (effects ? 2 : 1);
   const double growth = children * (1.0 - std::max(0.0, static_cast<double>(settings.absorption)));
   double rays = 1, generation = 1;
   unsigned depth = 0;
@@ -138,7 +139,7 @@ void check_branching(const RenderSettings &settings) {
   if (rays > most_rays_a_sample)
     throw UsageError(place, fmt::format("with --max-depth {} each sample could take {:.2g} rays after {} scatterings alone, and each ray may send {} shadow rays; at most {} rays are allowed",
                                         settings.max_depth, rays, depth, settings.light_samples, most_rays_a_sample),
-                     fmt::format("use --max-depth {} or less, a larger --absorption, or --indirect-samples 1 and more --spp", depth - 1));
+                     fmt::format("use --max-depth {} or less, {}or --indirect-samples 1 and more --spp", depth - 1, effects ? "" : "a larger --absorption, "));
 }
 
 const Plan &integrator(const std::string &name) {

@@ -183,6 +183,7 @@ TEST(Learn, WhatIsAskedWrongly) {
   expect_refusal({"learn", "paths", cornell, "--pixel", "1,1", "--samples", "0"}, 2, {"--samples"});
   expect_refusal({"learn", "paths", cornell, "--pixel", "1,1", "--samples", "257"}, 2, {"--samples"});
   expect_refusal({"learn", "paths", cornell, "--pixel", "1,1", "--sample", "4294967290"}, 2, {"--sample"});
+  for (const char *other : {"distribution", "bdpt", "photon", "sppm", "vcm", "whitted"}) expect_refusal({"learn", "paths", cornell, "--pixel", "1,1", "--integrator", other}, 2, {other, "hybrid"});
   expect_refusal({"learn", "paths", "no-such.gltf", "--pixel", "1,1", "-o", "."}, 1, {"no-such.gltf"});
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "base/file.h"
 #include "cli/process.h"
@@ -72,6 +73,28 @@ TEST(Render, NotesAreSaidUnlessQuiet) {
   EXPECT_EQ(notes({}).size(), 2u);
   EXPECT_EQ(notes({"--look-from", "1,2,3", "--look-at", "0,0,0"}).size(), 1u) << "of the light alone";
   EXPECT_EQ(notes({"-q"}).size(), 0u);
+}
+
+// An integrator that leaves light out says so once, with the names of those that follow it; where nothing is left out nothing is said.
+TEST(Render, LightThatIsLeftOutIsNamed) {
+  const TemporaryFolder folder;
+  RunOptions run;
+  run.folder = folder / "";
+  const auto notes = [&](const std::string &file, const std::string &integrator) {
+    const Ended ended = run_sunstone({"render", file, "--integrator", integrator, "--size", "8x8", "--spp", "1", "--max-depth", "2", "-o", "a.png"}, run);
+    EXPECT_EQ(ended.status, 0) << ended.error;
+    return lines_of(ended.error, "note");
+  };
+  const std::string glass_and_point = scene("whitted/whitted.gltf");
+  for (const auto &[file, integrator, follows] : {std::tuple<std::string, const char *, const char *>{cornell, "whitted", "path"}, {cornell, "distribution", "path"}, {glass_and_point, "path", "sppm"},
+                                                  {glass_and_point, "hybrid", "vcm"}}) {
+    const std::vector<std::string> said = notes(file, integrator);
+    ASSERT_EQ(said.size(), 1u) << integrator;
+    EXPECT_NE(said[0].find(std::string("--integrator ") + integrator), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find(follows), std::string::npos) << said[0];
+  }
+  for (const char *integrator : {"path", "hybrid", "pure"}) EXPECT_TRUE(notes(cornell, integrator).empty()) << integrator;
+  EXPECT_TRUE(notes(glass_and_point, "sppm").empty());
 }
 
 TEST(Render, WithoutOutputTheScenesStem) {
