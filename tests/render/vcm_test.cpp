@@ -180,4 +180,19 @@ TEST(Vcm, RefusesWhatItCannotDo) {
   refused("--radius", [](RenderSettings &s) { s.integrator = "bdpt"; });
 }
 
+// The same where merging in a vertex is about as likely as joining it, so that an error in any of their densities moves weight between them.
+TEST(Vcm, WeightsAddUpToOneInASmallDisk) {
+  constexpr float radius = 0.0175f;  // of 1024 light paths
+  for (const bool balance : {false, true}) {
+    SCOPED_TRACE(balance ? "balance heuristic" : "power heuristic");
+    RenderSettings s = vcm(32, 32, 4, radius);
+    s.balance = balance;
+    const std::vector<Film> films = render_seeds(Case(round_furnace()), s, 24, 2 * seeds);
+    for (const std::string &layer : bounces(0, 4)) {
+      EXPECT_EQ(differs(films, layer, whole(films[0]), {1, 1, 1}, 1e-4 + 0.2 * static_cast<double>(radius * radius)), "");
+      EXPECT_LT(relative_error(films, layer), 0.0015) << layer;
+    }
+  }
+}
+
 }  // namespace sunstone::test

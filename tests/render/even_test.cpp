@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light whose mean is known whatever casts it, a map of the sky too, by closed form or quadrature, for every integrator.
+// A floor seen from above: what it scatters once is the flux that it gets. Paths from the eye and from the light are about as likely.
+// A bowl, half of a hollow sphere, lit through its opening: what one point of a sphere sends to another is the same everywhere, so from the second bounce on radiance is even
+// and depends on the flux that comes in alone. Photons lie evenly in it, so that a density estimate is exact away from the rim.
+// Each mean misses its interval by chance once in 10^9 runs, and there are fewer than 500.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "support/agree.h"
+#include "support/scenes.h"
+#include "support/statistics.h"
+
+namespace sunstone::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr std::uint32_t seeds = 48;
+constexpr glm::vec3 albedo{0.9f, 0.8f, 0.6f};
+
+using Flux = glm::dvec3;
+
+// The lower half of a unit sphere about the origin: its upper half is cut away.
+Scene bowl() {
+  Scene scene;
+  Material clay = matt(albedo);
+  Image cut;
+  cut.name = "cut";
+  cut.width = 1;
+  cut.height = 2;
+  cut.channels = 4;
+  cut.pixels = std::vector<std::uint8_t>{255, 255, 255, 0, 255, 255, 255, 255};
+  clay.base_color_texture = use_picture(scene, std::move(cut), false);
+  clay.alpha_mode = AlphaMode::mask;
+  scene.materials.push_back(clay);
+  scene.shapes.push_back({Shape::Kind::sphere, "bowl", 0, scaled({1, 1, 1})});
+  add_camera(scene, {0.1f, 0, 0.05f}, {0.25f, -1, -0.1f}, 90);
+  return scene;
+}
+
+// Light of another colour from all sides, with a sun, a bright horizon and a dark north.
+Image stormy_sky(int width, int height) {
+  Image image;
+  image.name = "stormy sky";
+  image.width = width;
+  image.height = height;
+  image.channels = 3;
+  std::vector<float> values;
+  for (int y = 0; y < height; y++)
+    for (int x = 0; x < width; x++) {
+      const bool sun = y == height / 4 && x == width / 3, glow = y == height / 2 - 1 && x > width / 2;
+      const float wave = 1.2f + std::sin(static_cast<float>(3 * x + y)), north = x < width / 4 ? 0.1f : 1.0f;
+      const glm::vec3 value = sun ? glm::vec3(60, 50, 35) : glow ? glm::vec3(4, 2, 1) * wave : glm::vec3(0.3f, 0.5f, 0.9f) * wave * north;
+      for (int c = 0; c < 3; c++) values.push_back(value[c]);
+    }
+  image.pixels = std::move(values);
+  return image;
+}
+
+// Irradiance of a surface that faces up, by quadrature of the map as docs/conventions.md reads it.
+Flux sky_irradiance(const Environment &sky) {
+  const Image &map = *sky.map;
+  const auto &values = std::get<1>(map.pixels);
+  const auto texel = [&](int x, int y) {
+    x = (x % map.width + map.width) % map.width;
+    y = std::clamp(y, 0, map.height - 1);
+    const std::size_t at = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x));
+    return Flux(values[at], values[at + 1], values[at + 2]);
+  };
+  constexpr int columns = 1024, rows = 512;
+  Flux sum(0);
+  for (int row = 0; row < rows; row++) {
+    const double v = (row + 0.5) / rows / 2, y = v * map.height - 0.5;  // down to the horizon
+    const int y0 = static_cast<int>(std::floor(y));
+    Flux ring(0);
+    for (int column = 0; column < columns; column++) {
+      const double x = (column + 0.5) / columns * map.width - 0.5;
+      const int x0 = static_cast<int>(std::floor(x));
+      const Flux top = glm::mix(texel(x0, y0), texel(x0 + 1, y0), x - x0), bottom = glm::mix(texel(x0, y0 + 1), texel(x0 + 1, y0 + 1), x - x0);
+      ring += glm::mix(top, bottom, y - y0) / static_cast<double>(columns);
+    }
+    sum += ring * (2 * pi * std::cos(pi * v) * std::sin(pi * v) * (pi / 2 / rows));
+  }
+  return sum;
+}
+
+// What a rectangle of radiance 1 that faces down at height h sends to the unit disk about the origin, or to the square of half side `half`.
+double flux_of_quad(double x, double z, double half_x, double half_z, double h, double half = 0) {
+  constexpr int n = 24;
+  double sum = 0;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      for (int k = 0; k < n; k++)
+        for (int l = 0; l < 2 * n; l++) {
+          const double u = (k + 0.5) / n, v = (l + 0.5) / (2 * n);
+          const double to_x = half > 0 ? half * (2 * u - 1) : std::sqrt(u) * std::cos(2 * pi * v), to_z = half > 0 ? half * (2 * v - 1) : std::sqrt(u) * std::sin(2 * pi * v);
+          const double dx = x + half_x * (2 * (i + 0.5) / n - 1) - to_x, dz = z + half_z * (2 * (j + 0.5) / n - 1) - to_z;
+          const double squared = dx * dx + dz * dz + h * h;
+          sum += h * h / (squared * squared);
+        }
+  return sum * (4 * half_x * half_z) * (half > 0 ? 4 * half * half : pi) / (n * n * n * 2.0 * n);
+}
+
+// Each light adds itself to the scene and says what comes through the opening of area pi, or falls on the floor that is seen.
+constexpr double opening = pi, half_floor = 0.9, floor_area = 4 * half_floor * half_floor;
+
+Flux constant_sky(Scene &scene, double area = opening) {
+  set_sky(scene, {0.8f, 1, 1.5f});
+  return Flux(0.8, 1, 1.5) * pi * area;
+}
+Flux sky_of_many_colours(Scene &scene, double area = opening) {
+  set_sky_map(scene, stormy_sky(16, 8));
+  scene.environment.rotation = 0.3f;
+  return sky_irradiance(scene.environment) * area;
+}
+Flux sun(Scene &scene, double area = opening) {
+  Light light;
+  light.kind = Light::Kind::directional;
+  light.direction = glm::normalize(glm::vec3(0.3f, -1, 0.4f));
+  light.intensity = {3, 4, 5};
+  scene.lights.push_back(light);
+  return Flux(3, 4, 5) * area / std::sqrt(1.25);
+}
+Flux point(Scene &scene) {
+  add_point_light(scene, {0, 0.5f, 0}, {4, 3, 2});
+  return Flux(4, 3, 2) * 2.0 * pi * (1 - 0.5 / std::sqrt(1.25));
+}
+Flux spot(Scene &scene) {
+  Light light;
+  light.kind = Light::Kind::spot;
+  light.position = {0.2f, 1, 0};
+  light.direction = glm::normalize(glm::vec3(-0.1f, -1, 0.1f));
+  light.intensity = {9, 12, 15};
+  light.inner_angle = 0.2f;
+  light.outer_angle = 0.6f;
+  scene.lights.push_back(light);
+  const double inner = std::cos(static_cast<double>(light.inner_angle)), outer = std::cos(static_cast<double>(light.outer_angle));
+  return Flux(9, 12, 15) * 2.0 * pi * (1 - inner + (inner - outer) / 3);  // the ramp, squared
+}
+Flux disk_lamp(Scene &scene) {
+  scene.materials.push_back(lamp({5, 4, 6}));
+  scene.shapes.push_back({Shape::Kind::disk, "lamp", static_cast<int>(scene.materials.size()) - 1, {{0.6f, 0, 0}, {0, -0.6f, 0}, {0, 0, -0.6f}, {0, 0.4f, 0}}});
+  const double ratio = 1 / 0.36, x = 1 + 1.16 * ratio;  // of parallel disks: area of the larger, and 1 + (h^2 + R^2) / r^2
+  return Flux(5, 4, 6) * (pi * pi * 0.36) * 0.5 * (x - std::sqrt(x * x - 4 * ratio));
+}
+Flux quad_lamp(Scene &scene) {
+  add(scene, quad({-0.2f, 0.5f, 0.1f}, {0.5f, 0, 0}, {0, 0, 0.7f}), lamp({3, 5, 4}));
+  return Flux(3, 5, 4) * flux_of_quad(-0.2, 0.1, 0.5, 0.7, 0.5);
+}
+// Lamps side by side, of unequal power, one of them with two sides, and a spot below them: what each is chosen with matters.
+Flux many(Scene &scene) {
+  Material both = lamp({1, 1, 8});
+  both.double_sided = true;
+  add(scene, quad({0.6f, 0.5f, 0}, {0.1f, 0, 0}, {0, 0, 0.3f}), both);
+  const Flux lamps = quad_lamp(scene) + Flux(1, 1, 8) * flux_of_quad(0.6, 0, 0.1, 0.3, 0.5), all = lamps + spot(scene) * 0.3;
+  scene.lights[0].position = {0.1f, 0.4f, 0};
+  scene.lights[0].intensity *= 0.3f;
+  return all;
+}
+
+struct Work {
+  const char *integrator;
+  std::uint64_t samples;
+  double noise = 0.0025;  // relative standard error of the first bounce looked at, at most; of the next half more
+  double bias = 3e-4;     // of what is no estimate of a density: of floats, of cuts at the rim, of the quadrature
+  int size = 16;
+  std::uint32_t photons = 0;
+  float radius = 0;
+};
+// Merging is about as likely as joining; of photons, normals turn within the radius, by the square of its size; where a final gather may look at the rim it is small.
+Work vcm(std::uint64_t samples) { return {"vcm", samples, 0.0025, 1e-3, 16, 0, 0.035f}; }
+Work sppm(std::uint64_t samples, std::uint32_t photons) { return {"sppm", samples, 0.004, 2e-3, 16, photons, 0.1f}; }
+Work photon(std::uint64_t samples) { return {"photon", samples, 0.004, 2e-3, 16, 65536, 0.01f}; }
+
+std::vector<Film> films_of(const Case &scene, const Work &run, unsigned max_depth) {
+  RenderSettings s = picture(run.size, run.size, max_depth);
+  s.integrator = run.integrator;
+  s.filter = box_filter();
+  s.photons = run.photons;
+  s.radius = run.radius;
+  if (run.integrator == std::string("photon")) s.caustic_radius = run.radius;
+  if (run.integrator == std::string("vcm") || run.integrator == std::string("sppm")) s.alpha = 1;
+  std::vector<Film> films = render_seeds(scene, s, run.samples, seeds);
+  for (const Film &film : films) {
+    EXPECT_EQ(film.nan, 0u);
+    double sum = 0;  // nothing beyond the depth limit
+    for (const std::string &layer : bounces(0, max_depth)) sum += mean(film, layer, whole(film), 1);
+    EXPECT_NEAR(mean(film, "beauty", whole(film), 1), sum, 1e-6 * sum);
+  }
+  return films;
+}
+
+// Bounces 2 and 3.
+void expect_even(const std::function<Flux(Scene &)> &light, const std::vector<Work> &runs) {
+  Scene scene = bowl();
+  const Flux flux = light(scene);
+  const Case made(std::move(scene));
+  for (const Work &run : runs) {
+    SCOPED_TRACE(run.integrator);
+    const std::vector<Film> films = films_of(made, run, 3);
+    glm::vec3 expected = glm::vec3(flux / (4 * pi * pi)) * albedo * albedo;
+    for (const auto &[layer, noise] : {std::pair{"bounce.2", run.noise}, {"bounce.3", 1.5 * run.noise}}) {
+      EXPECT_EQ(differs(films, layer, whole(films[0]), expected, run.bias), "");
+      EXPECT_LT(relative_error(films, layer), noise) << layer << " is too noisy to tell";
+      expected *= albedo * 0.5f;
+    }
+  }
+}
+
+// The first bounce of a floor, as its mean over the picture.
+void expect_floor(const std::function<Flux(Scene &)> &light, const std::vector<Work> &runs) {
+  Scene scene;
+  add(scene, quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}), matt(albedo));
+  Camera above;
+  above.orthographic = true;
+  above.half_width = above.half_height = static_cast<float>(half_floor);
+  above.transform = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {0, 3, 0}};
+  scene.cameras.push_back(above);
+  const Flux flux = light(scene);
+  const Case made(std::move(scene));
+  for (const Work &run : runs) {
+    SCOPED_TRACE(run.integrator);
+    const std::vector<Film> films = films_of(made, run, 1);
+    EXPECT_EQ(differs(films, "bounce.1", whole(films[0]), glm::vec3(flux / (floor_area * pi)) * albedo, run.bias), "");
+    EXPECT_LT(relative_error(films, "bounce.1"), run.noise) << "is too noisy to tell";
+  }
+}
+
+}  // namespace
+
+TEST(Floor, ConstantSky) { expect_floor([](Scene &s) { return constant_sky(s, floor_area); }, {{"path", 32}, {"pure", 32}, {"bdpt", 32}, vcm(32)}); }
+TEST(Floor, SkyOfManyColours) { expect_floor([](Scene &s) { return sky_of_many_colours(s, floor_area); }, {{"path", 128}, {"pure", 512}, {"bdpt", 96}, vcm(96)}); }
+TEST(Floor, Sun) { expect_floor([](Scene &s) { return sun(s, floor_area); }, {{"path", 16}, {"bdpt", 32}, vcm(32)}); }
+TEST(Floor, SpotLight) { expect_floor(spot, {{"path", 64}, {"bdpt", 32}, vcm(32)}); }
+TEST(Floor, PointLight) {
+  const auto light = [](Scene &s) {
+    add_point_light(s, {0.1f, 0.5f, -0.2f}, {4, 3, 2});
+    constexpr int n = 1000;
+    double sum = 0;
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < n; j++) {
+        const double x = half_floor * (2 * (i + 0.5) / n - 1) - 0.1, z = half_floor * (2 * (j + 0.5) / n - 1) + 0.2, squared = x * x + z * z + 0.25;
+        sum += 0.5 / (squared * std::sqrt(squared)) / (n * n);
+      }
+    return Flux(4, 3, 2) * floor_area * sum;
+  };
+  expect_floor(light, {{"path", 32}, {"bdpt", 32}, vcm(32)});
+}
+TEST(Floor, QuadLamp) {
+  const auto light = [](Scene &s) {
+    add(s, quad({-0.2f, 0.5f, 0.1f}, {0.5f, 0, 0}, {0, 0, 0.7f}), lamp({3, 5, 4}));
+    return Flux(3, 5, 4) * flux_of_quad(-0.2, 0.1, 0.5, 0.7, 0.5, half_floor);
+  };
+  expect_floor(light, {{"path", 32}, {"pure", 96}, {"bdpt", 32}, vcm(32)});
+}
+
+TEST(Bowl, ConstantSky) { expect_even([](Scene &s) { return constant_sky(s); }, {{"path", 128}, {"pure", 192}, {"bdpt", 64}, vcm(48), sppm(2, 65536)}); }
+TEST(Bowl, SkyOfManyColours) { expect_even([](Scene &s) { return sky_of_many_colours(s); }, {{"path", 256}, {"pure", 512}, {"bdpt", 96}, vcm(48), sppm(3, 65536)}); }
+TEST(Bowl, Sun) { expect_even([](Scene &s) { return sun(s); }, {{"path", 128}, {"bdpt", 48}, sppm(2, 32768)}); }
+TEST(Bowl, PointLight) { expect_even(point, {{"path", 64}, {"bdpt", 32}, vcm(32), photon(24)}); }
+TEST(Bowl, SpotLight) { expect_even(spot, {{"path", 128}, {"bdpt", 48}, sppm(2, 16384)}); }
+TEST(Bowl, DiskLamp) { expect_even(disk_lamp, {{"path", 64}, {"pure", 256}, {"bdpt", 48}, vcm(32), photon(24)}); }
+TEST(Bowl, QuadLamp) { expect_even(quad_lamp, {{"path", 64}, {"pure", 256}, {"bdpt", 48}, sppm(2, 16384)}); }
+TEST(Bowl, ManyLights) { expect_even(many, {{"path", 128}, {"bdpt", 96}, vcm(48), sppm(2, 16384)}); }
+
+// With its lid on, and shining itself: bounce n is albedo^n. There is no rim, so that photons are exact to a few tenths of a per cent.
+TEST(Bowl, ClosedAndShining) {
+  Scene scene = bowl();
+  Material &clay = scene.materials[0];
+  clay.alpha_mode = AlphaMode::opaque;
+  clay.emission = {1, 1, 1};
+  const Case made(std::move(scene));
+  const std::vector<Work> runs{{"path", 32}, {"bdpt", 32}, vcm(32), {"sppm", 4, 0.0022, 3e-3, 16, 16384, 0.12f}, {"photon", 8, 0.002, 1e-3, 16, 65536, 0.05f}};
+  for (const Work &run : runs) {
+    SCOPED_TRACE(run.integrator);
+    const std::vector<Film> films = films_of(made, run, 4);
+    glm::vec3 expected(1);
+    for (const std::string &layer : bounces(0, 4)) {
+      EXPECT_EQ(differs(films, layer, whole(films[0]), expected, run.bias), "");
+      EXPECT_LT(relative_error(films, layer), run.noise) << layer << " is too noisy to tell";
+      expected *= albedo;
+    }
+  }
+}
+
+// A sample's radius is that of its number, by the schedule of [Knaus11]: the same bits as that radius asked for by itself.
+TEST(Bowl, RadiusBySampleNumber) {
+  Scene scene = bowl();
+  point(scene);
+  const Case made(std::move(scene));
+  for (const char *integrator : {"sppm", "vcm"})
+    for (const std::uint64_t sample : {0u, 1u, 6u}) {
+      RenderSettings s = picture(16, 16, 3);
+      s.integrator = integrator;
+      s.radius = 0.2f;
+      s.alpha = 0.7f;
+      RenderSettings still = s;
+      double share = 1;
+      for (std::uint64_t i = 1; i <= sample; i++) share *= (static_cast<double>(i) + static_cast<double>(s.alpha)) / static_cast<double>(i + 1);
+      still.radius = static_cast<float>(static_cast<double>(s.radius) * std::sqrt(share));
+      still.alpha = 1;
+      EXPECT_EQ(film_hash(render(made, s, {sample, sample + 1}).film), film_hash(render(made, still, {sample, sample + 1}).film)) << integrator << ", sample " << sample;
+    }
+}
+
+}  // namespace sunstone::test
