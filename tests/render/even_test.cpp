@@ -60,9 +60,9 @@ Image stormy_sky(int width, int height) {
   return image;
 }
 
-// Irradiance of a surface that faces up, by quadrature of the map as docs/conventions.md reads it.
-Flux sky_irradiance(const Environment &sky) {
-  const Image &map = *sky.map;
+// Calls visit(v, u, radiance, solid angle) all over the sky above the horizon: places of the map, as docs/conventions.md reads it.
+template <class Visit>
+void over_the_sky(const Image &map, const Visit &visit) {
   const auto &values = std::get<1>(map.pixels);
   const auto texel = [&](int x, int y) {
     x = (x % map.width + map.width) % map.width;
@@ -71,19 +71,22 @@ Flux sky_irradiance(const Environment &sky) {
     return Flux(values[at], values[at + 1], values[at + 2]);
   };
   constexpr int columns = 1024, rows = 512;
-  Flux sum(0);
   for (int row = 0; row < rows; row++) {
-    const double v = (row + 0.5) / rows / 2, y = v * map.height - 0.5;  // down to the horizon
+    const double v = (row + 0.5) / rows / 2, y = v * map.height - 0.5;
     const int y0 = static_cast<int>(std::floor(y));
-    Flux ring(0);
     for (int column = 0; column < columns; column++) {
-      const double x = (column + 0.5) / columns * map.width - 0.5;
+      const double u = (column + 0.5) / columns, x = u * map.width - 0.5;
       const int x0 = static_cast<int>(std::floor(x));
       const Flux top = glm::mix(texel(x0, y0), texel(x0 + 1, y0), x - x0), bottom = glm::mix(texel(x0, y0 + 1), texel(x0 + 1, y0 + 1), x - x0);
-      ring += glm::mix(top, bottom, y - y0) / static_cast<double>(columns);
+      visit(v, u, glm::mix(top, bottom, y - y0), 2 * pi / columns * std::sin(pi * v) * (pi / 2 / rows));
     }
-    sum += ring * (2 * pi * std::cos(pi * v) * std::sin(pi * v) * (pi / 2 / rows));
   }
+}
+
+// Of a surface that faces up.
+Flux sky_irradiance(const Environment &sky) {
+  Flux sum(0);
+  over_the_sky(*sky.map, [&](double v, double, const Flux &radiance, double solid_angle) { sum += radiance * std::cos(pi * v) * solid_angle; });
   return sum;
 }
 
@@ -106,6 +109,7 @@ double flux_of_quad(double x, double z, double half_x, double half_z, double h, 
 
 // Each light adds itself to the scene and says what comes through the opening of area pi, or falls on the floor that is seen.
 constexpr double opening = pi, half_floor = 0.9, floor_area = 4 * half_floor * half_floor;
+constexpr double disk = 2 * pi;  // as wide as the floor's diagonal: what far lights shine through
 
 Flux constant_sky(Scene &scene, double area = opening) {
   set_sky(scene, {0.8f, 1, 1.5f});
@@ -169,6 +173,7 @@ struct Work {
   int size = 16;
   std::uint32_t photons = 0;
   float radius = 0;
+  unsigned s = 0, t = 0;  // of bdpt: this strategy alone
 };
 // Merging is about as likely as joining; of photons, normals turn within the radius, by the square of its size; where a final gather may look at the rim it is small.
 Work vcm(std::uint64_t samples) { return {"vcm", samples, 0.0025, 1e-3, 16, 0, 0.035f}; }
@@ -181,6 +186,8 @@ std::vector<Film> films_of(const Case &scene, const Work &run, unsigned max_dept
   s.filter = box_filter();
   s.photons = run.photons;
   s.radius = run.radius;
+  s.strategy_s = run.s;
+  s.strategy_t = run.t;
   if (run.integrator == std::string("photon")) s.caustic_radius = run.radius;
   if (run.integrator == std::string("vcm") || run.integrator == std::string("sppm")) s.alpha = 1;
   std::vector<Film> films = render_seeds(scene, s, run.samples, seeds);
@@ -210,8 +217,8 @@ void expect_even(const std::function<Flux(Scene &)> &light, const std::vector<Wo
   }
 }
 
-// The first bounce of a floor, as its mean over the picture.
-void expect_floor(const std::function<Flux(Scene &)> &light, const std::vector<Work> &runs) {
+// A floor, seen whole but for its edges.
+Scene floor_from_above() {
   Scene scene;
   add(scene, quad({0, 0, 0}, {1, 0, 0}, {0, 0, -1}), matt(albedo));
   Camera above;
@@ -219,6 +226,12 @@ void expect_floor(const std::function<Flux(Scene &)> &light, const std::vector<W
   above.half_width = above.half_height = static_cast<float>(half_floor);
   above.transform = {{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {0, 3, 0}};
   scene.cameras.push_back(above);
+  return scene;
+}
+
+// Its first bounce, as the mean over the picture.
+void expect_floor(const std::function<Flux(Scene &)> &light, const std::vector<Work> &runs) {
+  Scene scene = floor_from_above();
   const Flux flux = light(scene);
   const Case made(std::move(scene));
   for (const Work &run : runs) {
@@ -229,7 +242,116 @@ void expect_floor(const std::function<Flux(Scene &)> &light, const std::vector<W
   }
 }
 
+// What each strategy of bdpt has of a floor's first bounce: the eye meets the light, asks it, or the light meets the floor. Of each bit of light its share is that of its density,
+// squared, among all three: as camera rays, of which a square metre gets one a pixel, and light paths, as many as there are pixels, bring it about.
+struct Shares {
+  Flux of[3] = {Flux(0), Flux(0), Flux(0)};
+
+  // All with the density of pixels on the floor left out.
+  void add(const Flux &flux, double met, double asked, double sent) {
+    const double all = met * met + asked * asked + sent * sent;
+    of[0] += flux * (met * met / all);
+    of[1] += flux * (asked * asked / all);
+    of[2] += flux * (sent * sent / all);
+  }
+};
+
+void expect_shares(const char *name, const Case &made, const Shares &shares) {
+  SCOPED_TRACE(name);
+  for (unsigned s = 0; s < 3; s++) {
+    if (shares.of[s].y == 0) continue;
+    SCOPED_TRACE("strategy " + std::to_string(s) + "," + std::to_string(3 - s));
+    const std::vector<Film> films = films_of(made, {"bdpt", 64, 0.005, 1e-3, 16, 0, 0, s, 3 - s}, 1);
+    EXPECT_EQ(differs(films, "bounce.1", whole(films[0]), glm::vec3(shares.of[s] / (floor_area * pi)) * albedo, 1e-3), "");
+    EXPECT_LT(relative_error(films, "bounce.1"), 0.005) << "is too noisy to tell";
+  }
+}
+
 }  // namespace
+
+TEST(Floor, SharesOfAConstantSky) {
+  Scene scene = floor_from_above();
+  constant_sky(scene);
+  Shares shares;
+  constexpr int n = 10000;
+  for (int i = 0; i < n; i++) {
+    const double cosine = (i + 0.5) / n, anywhere = 1 / (4 * pi);
+    shares.add(Flux(0.8, 1, 1.5) * (2 * pi * cosine / n * floor_area), cosine / pi, anywhere, floor_area * cosine / disk * anywhere);
+  }
+  expect_shares("constant sky", Case(std::move(scene)), shares);
+}
+TEST(Floor, SharesOfASky) {
+  Scene scene = floor_from_above();
+  sky_of_many_colours(scene);
+  const Case made(std::move(scene));
+  const Image &map = *made.scene().environment.map;
+  const auto width = static_cast<std::size_t>(map.width), height = static_cast<std::size_t>(map.height);
+  const std::vector<float> &cdf = made.flat(Layout::binary).environment_cdf;
+  Shares shares;
+  over_the_sky(map, [&](double v, double u, const Flux &radiance, double solid_angle) {
+    const auto row = static_cast<std::size_t>(v * map.height), column = static_cast<std::size_t>(u * map.width), at = height + 1 + row * (width + 1) + column;
+    const double chance = static_cast<double>(cdf[row + 1] - cdf[row]) * static_cast<double>(cdf[at + 1] - cdf[at]), cosine = std::cos(pi * v);
+    const double asked = chance * map.width * map.height / (2 * pi * pi * std::sin(pi * v));
+    shares.add(radiance * (cosine * solid_angle * floor_area), cosine / pi, asked, floor_area * cosine / disk * asked);
+  });
+  expect_shares("sky map", made, shares);
+}
+TEST(Floor, SharesOfLights) {
+  constexpr int n = 400;
+  const auto over_the_floor = [&](const glm::dvec3 &from, const auto &visit) {
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < n; j++) {
+        const glm::dvec3 to = glm::dvec3(half_floor * (2 * (i + 0.5) / n - 1), 0, half_floor * (2 * (j + 0.5) / n - 1)) - from;
+        const double squared = glm::dot(to, to);
+        visit(glm::normalize(to), from.y / std::sqrt(squared), squared, floor_area / (n * n));
+      }
+  };
+  {
+    Scene scene = floor_from_above();
+    add_point_light(scene, {0.1f, 0.5f, -0.2f}, {4, 3, 2});
+    Shares shares;
+    over_the_floor({0.1, 0.5, -0.2}, [&](const glm::dvec3 &, double cosine, double squared, double area) {
+      shares.add(Flux(4, 3, 2) * (cosine / squared * area), 0, 1, floor_area * cosine / squared / (4 * pi));
+    });
+    expect_shares("point light", Case(std::move(scene)), shares);
+  }
+  {
+    Scene scene = floor_from_above();
+    spot(scene);
+    const Light &light = scene.lights[0];
+    const double inner = std::cos(static_cast<double>(light.inner_angle)), outer = std::cos(static_cast<double>(light.outer_angle));
+    Shares shares;
+    over_the_floor(glm::dvec3(light.position), [&](const glm::dvec3 &to, double cosine, double squared, double area) {
+      const double ramp = std::clamp((glm::dot(to, glm::dvec3(light.direction)) - outer) / (inner - outer), 0.0, 1.0);
+      shares.add(Flux(light.intensity) * (ramp * ramp * cosine / squared * area), 0, 1, floor_area * cosine / squared / (2 * pi * (1 - outer)));
+    });
+    expect_shares("spot", Case(std::move(scene)), shares);
+  }
+  {
+    Scene scene = floor_from_above();
+    const Flux flux = sun(scene, floor_area);
+    Shares shares;
+    shares.add(flux, 0, 1, floor_area / std::sqrt(1.25) / disk);
+    expect_shares("sun", Case(std::move(scene)), shares);
+  }
+}
+TEST(Floor, SharesOfALamp) {
+  Scene scene = floor_from_above();
+  add(scene, quad({-0.2f, 0.5f, 0.1f}, {0.5f, 0, 0}, {0, 0, 0.7f}), lamp({3, 5, 4}));
+  const Case made(std::move(scene));
+  Shares shares;
+  constexpr int n = 30;
+  constexpr double lamp_area = 4 * 0.5 * 0.7;
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++)
+      for (int k = 0; k < n; k++)
+        for (int l = 0; l < n; l++) {
+          const glm::dvec3 from(-0.2 + 0.5 * (2 * (i + 0.5) / n - 1), 0.5, 0.1 + 0.7 * (2 * (j + 0.5) / n - 1)), to(half_floor * (2 * (k + 0.5) / n - 1), 0, half_floor * (2 * (l + 0.5) / n - 1));
+          const double squared = glm::dot(to - from, to - from), geometry = 0.25 / (squared * squared);  // both cosines are 0.5 / distance
+          shares.add(Flux(3, 5, 4) * (geometry * lamp_area * floor_area / (1.0 * n * n * n * n)), geometry / pi, 1 / lamp_area, floor_area * geometry / pi / lamp_area);
+        }
+  expect_shares("lamp", made, shares);
+}
 
 TEST(Floor, ConstantSky) { expect_floor([](Scene &s) { return constant_sky(s, floor_area); }, {{"path", 32}, {"pure", 32}, {"bdpt", 32}, vcm(32)}); }
 TEST(Floor, SkyOfManyColours) { expect_floor([](Scene &s) { return sky_of_many_colours(s, floor_area); }, {{"path", 128}, {"pure", 512}, {"bdpt", 96}, vcm(96)}); }
@@ -304,6 +426,34 @@ TEST(Bowl, RadiusBySampleNumber) {
       still.alpha = 1;
       EXPECT_EQ(film_hash(render(made, s, {sample, sample + 1}).film), film_hash(render(made, still, {sample, sample + 1}).film)) << integrator << ", sample " << sample;
     }
+}
+
+// A lamp that rises while the shutter is open: what comes in is the mean over its way. Photons have times of their own, or share those of eye paths.
+TEST(Bowl, ALightThatRises) {
+  constexpr double from = 0.4, to = 1.6;
+  const auto rising = [](Scene &scene) {
+    scene.motion_steps = 2;
+    add_point_light(scene, {0, static_cast<float>(from), 0}, {4, 3, 2});
+    for (const double share : {0.5, 1.0}) scene.lights[0].keys.push_back({{0, static_cast<float>(from + (to - from) * share), 0}, {0, 0, -1}});
+    return Flux(4, 3, 2) * 2.0 * pi * (1 - (std::sqrt(1 + to * to) - std::sqrt(1 + from * from)) / (to - from));
+  };
+  expect_even(rising, {{"path", 64}, {"bdpt", 32}, {"vcm", 256, 0.005, 1e-3, 8, 0, 0.07f}, {"sppm", 24, 0.015, 2e-3, 16, 4096, 0.1f}, photon(32)});
+}
+
+// Bowl, lamp and camera on their way together, unevenly: as if all stood still, where what is found of one walk by another has its time.
+TEST(Bowl, CarriedAlong) {
+  const auto carried = [](Scene &scene) {
+    const Flux flux = point(scene);
+    scene.motion_steps = 2;
+    for (const glm::vec3 way : {glm::vec3(0.5f, 0.1f, 0.2f), glm::vec3(2, -0.3f, 0.7f)}) {
+      scene.shapes[0].keys.push_back(scaled({1, 1, 1}, way));
+      scene.cameras[0].keys.push_back(scene.cameras[0].transform);
+      scene.cameras[0].keys.back()[3] += way;
+      scene.lights[0].keys.push_back({scene.lights[0].position + way, {0, 0, -1}});
+    }
+    return flux;
+  };
+  expect_even(carried, {{"path", 64}, {"bdpt", 32}, vcm(32), sppm(3, 16384)});
 }
 
 }  // namespace sunstone::test

@@ -312,4 +312,23 @@ TEST(Motion, TimesOfSamples) {
   EXPECT_NE(time(1, 0).time, time(1, 1).time);
 }
 
+// A panel that shines to one side shrinks to nothing and grows again as its own mirror image: its front stays its front. A place is covered while the panel is wide enough.
+TEST(Motion, AMirroredFrontStaysTheFront) {
+  Scene scene;
+  scene.motion_steps = 1;
+  add(scene, quad({0, 0, 0}, {0.8f, 0, 0}, {0, 2, 0}), lamp({1, 2, 3}));
+  scene.instances[0].keys.push_back(scaled({-1, 1, 1}, {0, 0, 0}));
+  add_flat_camera(scene, {0, 0, 2}, 1);
+  const Case moving(std::move(scene));
+  RenderSettings settings = picture(16, 16, 0);
+  settings.filter = box_filter();
+  const std::vector<Film> films = render_seeds(moving, settings, 64, 16);
+  for (int column = 0; column < 16; column++) {
+    // 1 - |x| / 0.8, its mean over the pixel.
+    const double nearer = std::abs(column - 7.5) / 8 - 1.0 / 16, farther = nearer + 1.0 / 8, end = std::min(farther, 0.8);
+    const double lit = end > nearer ? ((end - nearer) - (end * end - nearer * nearer) / 1.6) * 8 : 0;
+    EXPECT_EQ(differs(films, "beauty", {column, 0, column + 1, 16}, glm::vec3(1, 2, 3) * static_cast<float>(lit), 1e-4), "") << "column " << column;
+  }
+}
+
 }  // namespace sunstone::test
