@@ -358,4 +358,39 @@ TEST(Bdpt, RefusesWhatItCannotDo) {
   refused("--strategy", [](RenderSettings &s) { s.integrator = "path", s.strategy_t = 2; });
 }
 
+// The eye within rough glass that absorbs: what light paths send from the glass' inner side to the lens is absorbed on that way, as the eye's ray is.
+TEST(Bdpt, EyeWithinGlassThatAbsorbs) {
+  Scene scene;
+  add(scene, box({-1, -1, -1}, {1, 1, 1}), glass({0.3f, 0.6f, 0.1f}, 0.6f));
+  add(scene, quad({0, 0, -2}, {1.5f, 0, 0}, {0, 1.5f, 0}), lamp({2, 3, 4}));
+  add_camera(scene, {0, 0, 0.6f}, {0, 0, -1}, 50);
+  const Case made(std::move(scene));
+  const RenderSettings s = picture(16, 16, 1);
+  expect_alone(made, s, render_seeds(made, s, 64, seeds), 2, 1, 256, 0.01);
+}
+
+// Stripes on the edges of pixels, where a filter that is negative at its end takes more than in the middle: light that falls there counts as camera rays from there do.
+TEST(Bdpt, StripesOnTheEdgesOfPixels) {
+  Scene scene;
+  Image stripes;
+  stripes.name = "stripes";
+  stripes.width = 80;
+  stripes.height = 1;
+  stripes.channels = 3;
+  std::vector<std::uint8_t> bytes;
+  for (int x = 0; x < 80; x++) bytes.insert(bytes.end(), 3, x % 4 == 0 || x % 4 == 3 ? 255 : 0);
+  stripes.pixels = std::move(bytes);
+  Material wall = matt({0.8f, 0.8f, 0.8f});
+  wall.base_color_texture = use_picture(scene, std::move(stripes), false);
+  add(scene, quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), wall);
+  Light light = sun_light();
+  light.direction = {0, 0, -1};
+  scene.lights.push_back(light);
+  add_flat_camera(scene, {0, 0, 2}, 0.8f);  // a pixel is four texels wide
+  const Case made(std::move(scene));
+  RenderSettings s = picture(16, 16, 1);
+  s.filter = filter_from_name("mitchell");
+  expect_alone(made, s, render_seeds(made, s, 64, seeds), 2, 1, 128, 0.004, 16);
+}
+
 }  // namespace sunstone::test

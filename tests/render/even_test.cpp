@@ -256,12 +256,12 @@ struct Shares {
   }
 };
 
-void expect_shares(const char *name, const Case &made, const Shares &shares) {
+void expect_shares(const char *name, const Case &made, const Shares &shares, std::uint64_t samples = 64) {
   SCOPED_TRACE(name);
   for (unsigned s = 0; s < 3; s++) {
     if (shares.of[s].y == 0) continue;
     SCOPED_TRACE("strategy " + std::to_string(s) + "," + std::to_string(3 - s));
-    const std::vector<Film> films = films_of(made, {"bdpt", 64, 0.005, 1e-3, 16, 0, 0, s, 3 - s}, 1);
+    const std::vector<Film> films = films_of(made, {"bdpt", samples, 0.005, 1e-3, 16, 0, 0, s, 3 - s}, 1);
     EXPECT_EQ(differs(films, "bounce.1", whole(films[0]), glm::vec3(shares.of[s] / (floor_area * pi)) * albedo, 1e-3), "");
     EXPECT_LT(relative_error(films, "bounce.1"), 0.005) << "is too noisy to tell";
   }
@@ -281,20 +281,28 @@ TEST(Floor, SharesOfAConstantSky) {
   expect_shares("constant sky", Case(std::move(scene)), shares);
 }
 TEST(Floor, SharesOfASky) {
-  Scene scene = floor_from_above();
-  sky_of_many_colours(scene);
-  const Case made(std::move(scene));
-  const Image &map = *made.scene().environment.map;
-  const auto width = static_cast<std::size_t>(map.width), height = static_cast<std::size_t>(map.height);
-  const std::vector<float> &cdf = made.flat(Layout::binary).environment_cdf;
-  Shares shares;
-  over_the_sky(map, [&](double v, double u, const Flux &radiance, double solid_angle) {
-    const auto row = static_cast<std::size_t>(v * map.height), column = static_cast<std::size_t>(u * map.width), at = height + 1 + row * (width + 1) + column;
-    const double chance = static_cast<double>(cdf[row + 1] - cdf[row]) * static_cast<double>(cdf[at + 1] - cdf[at]), cosine = std::cos(pi * v);
-    const double asked = chance * map.width * map.height / (2 * pi * pi * std::sin(pi * v));
-    shares.add(radiance * (cosine * solid_angle * floor_area), cosine / pi, asked, floor_area * cosine / disk * asked);
-  });
-  expect_shares("sky map", made, shares);
+  for (const bool zenith : {false, true}) {
+    Scene scene = floor_from_above();
+    sky_of_many_colours(scene);
+    if (zenith) {  // alone is bright, so that light paths are likely
+      Image map = stormy_sky(16, 8);
+      auto &values = std::get<1>(map.pixels);
+      for (std::size_t i = 0; i < values.size(); i++) values[i] = i < values.size() / 4 ? 1.0f : 0.02f;
+      set_sky_map(scene, std::move(map));
+    }
+    const Case made(std::move(scene));
+    const Image &map = *made.scene().environment.map;
+    const auto width = static_cast<std::size_t>(map.width), height = static_cast<std::size_t>(map.height);
+    const std::vector<float> &cdf = made.flat(Layout::binary).environment_cdf;
+    Shares shares;
+    over_the_sky(map, [&](double v, double u, const Flux &radiance, double solid_angle) {
+      const auto row = static_cast<std::size_t>(v * map.height), column = static_cast<std::size_t>(u * map.width), at = height + 1 + row * (width + 1) + column;
+      const double chance = static_cast<double>(cdf[row + 1] - cdf[row]) * static_cast<double>(cdf[at + 1] - cdf[at]), cosine = std::cos(pi * v);
+      const double asked = chance * map.width * map.height / (2 * pi * pi * std::sin(pi * v));
+      shares.add(radiance * (cosine * solid_angle * floor_area), cosine / pi, asked, floor_area * cosine / disk * asked);
+    });
+    expect_shares(zenith ? "bright zenith" : "sky map", made, shares, zenith ? 128 : 64);
+  }
 }
 TEST(Floor, SharesOfLights) {
   constexpr int n = 400;
@@ -454,6 +462,36 @@ TEST(Bowl, CarriedAlong) {
     return flux;
   };
   expect_even(carried, {{"path", 64}, {"bdpt", 32}, vcm(32), sppm(3, 16384)});
+}
+
+// Closed, shining, and seen from its centre: all that a walk finds next lies evenly on the sphere, so that the strategies of a path are equally likely but for two things.
+// Light leaves by either side, so that half of the light paths are lost; and those that end in the lens stand against camera rays, which are denser at the picture's corners.
+TEST(Bowl, SharesOfStrategies) {
+  Scene scene = bowl();
+  scene.materials[0].alpha_mode = AlphaMode::opaque;
+  scene.materials[0].emission = {1, 1, 1};
+  scene.cameras.clear();
+  add_camera(scene, {0, 0, 0}, {0.3f, -1, 0.2f}, 120);
+  const Case made(std::move(scene));
+  for (unsigned bounce = 1; bounce <= 3; bounce++)
+    for (unsigned s = 0; s <= bounce + 1; s++) {
+      const unsigned t = bounce + 2 - s;
+      SCOPED_TRACE("strategy " + std::to_string(s) + "," + std::to_string(t));
+      constexpr int n = 400;
+      const double reach = std::tan(pi / 3);
+      double share = 0;
+      for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+          const double x = reach * (2 * (i + 0.5) / n - 1), y = reach * (2 * (j + 0.5) / n - 1);
+          const double to_lens = 4 * reach * reach / std::pow(1 + x * x + y * y, 1.5) / (4 * pi);
+          const double sent = s < 2 ? 1 : t > 1 ? 0.25 : 0.25 * to_lens * to_lens;  // squared
+          share += sent / (2 + 0.25 * (bounce - 1) + 0.25 * to_lens * to_lens) / (n * n);
+        }
+      const std::vector<Film> films = films_of(made, {"bdpt", 32, 0.005, 1e-3, 16, 0, 0, s, t}, 3);
+      const std::string layer = "bounce." + std::to_string(bounce);
+      EXPECT_EQ(differs(films, layer, whole(films[0]), glm::pow(albedo, glm::vec3(static_cast<float>(bounce))) * static_cast<float>(share), 1e-3), "");
+      EXPECT_LT(relative_error(films, layer), 0.005) << "is too noisy to tell";
+    }
 }
 
 }  // namespace sunstone::test

@@ -52,7 +52,7 @@ Scene round_furnace() {
   glowing.roughness = 0;
   glowing.emission = {1, 1, 1};
   add_shape(scene, Shape::Kind::sphere, glowing, scaled({1, 1, 1}));
-  add_camera(scene, {0.1f, 0.2f, 0.3f}, {1, 0.1f, -0.4f}, 60);
+  add_camera(scene, {0.1f, 0.2f, 0.3f}, {1, 0.1f, -0.4f}, 110);
   return scene;
 }
 
@@ -190,7 +190,7 @@ TEST(Vcm, WeightsAddUpToOneInDisksOfEverySize) {
     std::uint64_t samples;
     double noise;
   };
-  for (const Disk &disk : {Disk{32, 0.0175f, 4, 24, 0.0015}, {64, 0.06f, 4, 8, 0.0012}, {32, 0.06f, 1, 96, 0.0004}}) {
+  for (const Disk &disk : {Disk{32, 0.0175f, 4, 16, 0.0015}, {64, 0.06f, 2, 16, 0.0012}, {32, 0.06f, 1, 96, 0.0004}}) {
     SCOPED_TRACE("radius " + std::to_string(disk.radius) + ", depth " + std::to_string(disk.max_depth));
     const std::vector<Film> films = render_seeds(Case(round_furnace()), vcm(disk.size, disk.size, disk.max_depth, disk.radius), disk.samples, 2 * seeds);
     for (const std::string &layer : bounces(0, disk.max_depth)) {

@@ -222,6 +222,13 @@ std::vector<TracedRay> all_sorts_of_rays(const Scene &scene, const FlatScene &fl
     on.passed_instance = hit.instance;
     on.passed_primitive = hit.primitive;
     rays.push_back(on);
+    const Hit next = host_closest(flat, tree, on, SUN_WANT_ALL);
+    if (next.instance != SUN_NONE) {  // of twins it has passed both
+      on.ray.passed_t = next.t;
+      on.passed_instance = next.instance;
+      on.passed_primitive = next.primitive;
+      rays.push_back(on);
+    }
     ends.ray.t_max = i % 2 ? hit.t : std::nextafter(hit.t, INFINITY);
     rays.push_back(ends);
   }
