@@ -345,4 +345,21 @@ TEST(Photons, RefuseWhatMeansNothing) {
   refuses(elsewhere, "--photons");
 }
 
+// A slab of rough glass that lets nothing through, thinner than the radius: photons on one side of it are none of the other's.
+TEST(Photons, StayOnTheirSideOfASlab) {
+  Scene scene;
+  add(scene, box({-1, -0.01f, -1}, {1, 0.01f, 1}), glass({1000, 1000, 1000}, 0.6f));
+  add(scene, quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}), matt({0.8f, 0.8f, 0.8f}));
+  add_point_light(scene, {0, 0.5f, 0}, {4, 4, 4});
+  double seen[2];
+  for (const bool below : {false, true}) {
+    scene.cameras.clear();
+    add_camera(scene, {0.1f, below ? -1.5f : 0.8f, 0}, {0, 0, 0}, 20);
+    const Film film = render(Case(scene), sppm(picture(16, 16, 3), 20000, 0.1f), {0, 2}).film;
+    seen[below] = mean(film, "bounce.2", whole(film), 1);
+  }
+  EXPECT_GT(seen[0], 1e-3) << "the test sees nothing";
+  EXPECT_LT(seen[1], 1e-4 * seen[0]);
+}
+
 }  // namespace sunstone::test
