@@ -58,6 +58,7 @@ SUN_FN Split split_albedo(const SUN_GLOBAL float *tables, real alpha_axis, real 
                     table_bilinear(tables + SUN_TABLE_SPLIT_B, at, SUN_ENERGY_N, i.towards, j.towards));
 }
 SUN_FN Split split_mean(const SUN_GLOBAL float *tables, real alpha_axis) {
+  if (!ANY(alpha_axis != 0.0f)) return make_split((real)(tables[SUN_TABLE_SPLIT_A_MEAN]), (real)(tables[SUN_TABLE_SPLIT_B_MEAN]));  // smooth
   TableCell j = table_cell(alpha_axis, (float)SUN_ENERGY_N);
   return make_split(table_linear(tables + SUN_TABLE_SPLIT_A_MEAN, j.node, j.towards),
                     table_linear(tables + SUN_TABLE_SPLIT_B_MEAN, j.node, j.towards));

@@ -16,11 +16,16 @@
 #endif
 #endif
 
-// Not any(): PoCL makes a chain of branches of it. Where clang can tell, one instruction.
+// Not any(): PoCL makes a chain of branches of it. Where clang can tell, one instruction; where the CPU has masks, their own.
 #define SUN_ANY(m) any(m)
 #define SUN_ALL(m) all(m)
 #if !defined(__cplusplus) && defined(__has_builtin)
-#if __has_builtin(__builtin_reduce_or)
+#if LANES == 16 && defined(__AVX512DQ__) && __has_builtin(__builtin_ia32_cvtd2mask512)
+#undef SUN_ANY
+#undef SUN_ALL
+#define SUN_ANY(m) (__builtin_ia32_cvtd2mask512(m) != 0)
+#define SUN_ALL(m) ((ushort)__builtin_ia32_cvtd2mask512(m) == 0xffffu)
+#elif __has_builtin(__builtin_reduce_or)
 #undef SUN_ANY
 #undef SUN_ALL
 #define SUN_ANY(m) (__builtin_reduce_or((m) < 0) != 0)

@@ -49,9 +49,15 @@ SUN_FN uint_n fetch_words(const TexturePages *pages, uint_n page, uint_n at) {
   return LANES_LOAD(value);
 }
 
+// byte / 255, rounded as the quotient is: the product, and what it lacks (tests/host/flatten/textures_test.cpp: all 256).
+SUN_FN real level_of_byte(uint_n byte) {
+  const real value = real_of_uint(byte), near = value * 0.00392156886f;
+  return fma(fma(near, (real)(-255.0f), value), (real)(0.00392156886f), near);
+}
+
 // `alike`: all lanes have the same byte.
 SUN_FN real decode_byte(const SUN_GLOBAL float *tables, uint_n byte, mask srgb, int alike) {
-  real level = real_of_uint(byte) / 255.0f;
+  real level = level_of_byte(byte);
   if (!ANY(srgb)) return level;
   const SUN_GLOBAL float *curve = tables + SUN_TABLE_SRGB;
   return srgb ? (alike ? (real)(curve[FIRST_LANE(byte)]) : gather_real(curve, byte)) : level;
@@ -75,7 +81,7 @@ SUN_FN Texel4 fetch_texels(const TexturePages *pages, const TextureLanes *textur
     out.r = decode_byte(tables, word & low_byte, srgb, alike);
     out.g = decode_byte(tables, (word >> 8) & low_byte, srgb, alike);
     out.b = decode_byte(tables, (word >> 16) & low_byte, srgb, alike);
-    out.a = real_of_uint(word >> 24) / 255.0f;
+    out.a = level_of_byte(word >> 24);
   }
   if (ANY(half_size)) {
     const uint_n at = texture->offset + (half_size ? (uint_n)(2u) * texel : (uint_n)(0u));
@@ -184,6 +190,20 @@ SUN_FN Texel4 sample_slot(const TexturePages *pages, const SUN_GLOBAL Texture *t
   const real u = real_of_bits(head.z) * s + real_of_bits(head.w) * t + real_of_bits(tail.x);
   const real v = real_of_bits(tail.y) * s + real_of_bits(tail.z) * t + real_of_bits(tail.w);
   return sample_textures(pages, textures, tables, head.x, alike, FIRST_LANE(head.x), u, v, some);
+}
+
+// The same where all lanes ask for one: its record is read once, and nothing is sorted.
+SUN_FN Texel4 sample_slot_alike(const TexturePages *pages, const SUN_GLOBAL Texture *textures, const SUN_GLOBAL TextureRef *refs,
+                                const SUN_GLOBAL float *tables, uint ref, const real *uv0, const real *uv1, mask wanted) {
+  Texel4 out;
+  out.r = out.g = out.b = out.a = (real)(1.0f);
+  if (ref == SUN_NONE) return out;
+  const SUN_GLOBAL TextureRef *look = refs + ref;
+  const uint set_0 = look->uv_set == 0u;
+  const real s = set_0 ? uv0[0] : uv1[0], t = set_0 ? uv0[1] : uv1[1];
+  const real u = look->m[0] * s + look->m[1] * t + look->m[2];
+  const real v = look->m[3] * s + look->m[4] * t + look->m[5];
+  return sample_textures(pages, textures, tables, (uint_n)(look->texture), 1, look->texture, u, v, wanted);
 }
 
 SUN_NAMESPACE_END

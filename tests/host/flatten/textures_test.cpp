@@ -244,4 +244,8 @@ TEST(Textures, PagesAreFilledInOrderAndEndInAnError) {
 }
 
 }  // namespace
+TEST(Texels, BytesAreQuotientsToTheBit) {
+  for (unsigned byte = 0; byte < 256; byte++) EXPECT_EQ(kernel::level_of_byte(byte), static_cast<float>(byte) / 255.0f) << byte;
+}
+
 }  // namespace sunstone
