@@ -64,7 +64,11 @@ void write_shapes(const Scene &scene, bool planes, bool extras, FlatScene &flat,
     }
     const uint material = material_number(scene, shape.material);
     instance.flags |= kind_bit(shape.kind);
-    if (aligned(instance.to_world) && aligned(instance.to_object)) instance.flags |= SUN_INSTANCE_ALIGNED;
+    if (aligned(instance.to_world) && aligned(instance.to_object)) {
+      instance.flags |= SUN_INSTANCE_ALIGNED;
+      const float *m = instance.to_world;
+      if (shape.kind == Shape::Kind::sphere && keys.empty() && m[0] == m[5] && m[0] == m[10]) instance.flags |= SUN_INSTANCE_ROUND;
+    }
     if (single_sided(flat.materials[material])) instance.flags |= SUN_INSTANCE_SINGLE_SIDED;
     if (flat.materials[material].flags & SUN_MATERIAL_PASSABLE) instance.flags |= SUN_INSTANCE_PASSABLE;
     take_keys(keys, instance, flat);

@@ -22,26 +22,26 @@ SUN_INLINE vec2 encode_octahedron(vec3 d) {
 // the point of the ray that is nearest to the centre, so spheres far away keep their outline [Haines19].
 SUN_INLINE mask meet_sphere(vec3 origin, vec3 direction, mask on, real *near, real *far) {
   const real a = dot3(direction, direction), b = -dot3(origin, direction);
-  const real middle = b / a;
+  const real inverse = 1.0f / a, middle = b * inverse;
   const real x = fma(middle, direction.x, origin.x), y = fma(middle, direction.y, origin.y), z = fma(middle, direction.z, origin.z);
   const real discriminant = 1.0f - (x * x + y * y + z * z);
-  const mask meets = on & (discriminant >= 0.0f);
+  const real c = dot3(origin, origin) - 1.0f;
+  const mask meets = on & (discriminant >= 0.0f) & ((b > 0.0f) | (c < 0.0f));  // from outside and away: both are behind
   *near = *far = (real)(0.0f);
   if (!ANY(meets)) return meets;
   const real q = b + copysign(sqrt((meets ? discriminant : (real)(0.0f)) * a), b);
-  const real c = dot3(origin, origin) - 1.0f;
-  const real one = q / a, other = q != 0.0f ? c / q : one;
+  const real one = q * inverse, other = q != 0.0f ? c / q : one;
   *near = SUN_LESSER(one, other);
   *far = SUN_GREATER(one, other);
   return meets;
 }
 
-// LANES rays that look for shapes. Slabs are made when the first box is asked: most rays that meet nothing never do.
+// LANES rays that look for shapes.
 typedef struct ShapeRays {
   vec3 origin, direction;
   real t_max;
   const SUN_GLOBAL float *lower, *upper;  // bounds of the world
-  int ready;                              // are the slabs?
+  int ready;                              // are the slabs? Else they are made where they are asked
   LaneSlabs slabs;
 } ShapeRays;
 
@@ -58,13 +58,13 @@ typedef struct ShapeHit {
   vec3 place;  // in the shape's space
 } ShapeHit;
 
-// A distance at which the rays' lines meet the shape, ahead and not beyond the ray's end: does it count?
-SUN_INLINE ShapeHit count_met(uint primitive, vec3 place, LaneInterval inside, const ShapeSearch *search, real met, mask on) {
+// A distance at which the rays' lines meet the shape and are within its box: does it count?
+SUN_INLINE ShapeHit count_met(uint primitive, vec3 place, const ShapeSearch *search, real t, mask on) {
   ShapeHit hit;
   hit.place = place;
-  hit.t = met < inside.near ? inside.near : met;
-  hit.t = hit.t > inside.far ? inside.far : hit.t;
-  const mask behind = (hit.t > search->passed_t) | ((hit.t == search->passed_t) & ((uint_n)(primitive) >= search->first_primitive));
+  hit.t = t;
+  mask behind = hit.t > search->passed_t;
+  if (SUN_PASSABLE) behind = behind | ((hit.t == search->passed_t) & ((uint_n)(primitive) >= search->first_primitive));
   const mask before = (hit.t < search->best_t) | ((hit.t == search->best_t) & ((uint_n)(primitive) < search->end_primitive));
   hit.counts = on & behind & before;
   return hit;
@@ -74,14 +74,32 @@ SUN_INLINE vec3 place_along(vec3 origin, vec3 direction, real t) {
   return make_vec3(fma(t, direction.x, origin.x), fma(t, direction.y, origin.y), fma(t, direction.z, origin.z));
 }
 
-// Where the rays are inside the shape's box, and whether they are.
-SUN_INLINE mask enter_box(const SUN_GLOBAL Instance *instance, ShapeRays *rays, LaneInterval *inside) {
-  if (!rays->ready) {
-    rays->slabs = slabs_of_lanes(rays->origin, rays->direction, rays->lower, rays->upper);
-    rays->ready = 1;
+// Is that surely a point of the box, though its coordinate was rounded? The slabs of such a box hold the point's distance, as they make up for more than that.
+SUN_INLINE mask surely_between(float lower, float upper, real place) {
+  const float a = fabs(lower), b = fabs(upper), margin = 2.38418579e-7f * SUN_GREATER(a, b);  // 2^-22; shape boxes are wider by 2^-19
+  return (place > lower + margin) & (place < upper - margin);
+}
+
+// Where the rays are inside the shape's box, by its slabs, and whether they are.
+SUN_RARE mask pass_slabs(const SUN_GLOBAL Instance *instance, const ShapeRays *rays, LaneInterval *inside) {
+  const LaneSlabs slabs = rays->ready ? rays->slabs : slabs_of_lanes(rays->origin, rays->direction, rays->lower, rays->upper);
+  *inside = box_lanes(&slabs, instance->lower[0], instance->lower[1], instance->lower[2], instance->upper[0], instance->upper[1], instance->upper[2], (real)(0.0f));
+  return slabs.usable & (inside->near <= inside->far);
+}
+
+// The rays of `on` that meet the shape, at `t`, within its box, into whose interval t is clamped. Mostly the place where they do settles it, without any slab.
+SUN_INLINE mask enter_box(const SUN_GLOBAL Instance *instance, const ShapeRays *rays, mask on, real *t) {
+  const vec3 place = place_along(rays->origin, rays->direction, *t);
+  const mask sure = surely_between(instance->lower[0], instance->upper[0], place.x) & surely_between(instance->lower[1], instance->upper[1], place.y) &
+                    surely_between(instance->lower[2], instance->upper[2], place.z);
+  if (ANY(on & !sure)) {
+    const ShapeRays copy = *rays;  // so that what is asked mostly stays in registers
+    LaneInterval inside;
+    on = on & pass_slabs(instance, &copy, &inside);
+    *t = *t < inside.near ? inside.near : *t;
+    *t = *t > inside.far ? inside.far : *t;
   }
-  *inside = box_lanes(&rays->slabs, instance->lower[0], instance->lower[1], instance->lower[2], instance->upper[0], instance->upper[1], instance->upper[2], (real)(0.0f));
-  return rays->slabs.usable & (inside->near <= inside->far);
+  return on;
 }
 
 // Rays in the space of a shape that is still.
@@ -98,13 +116,12 @@ SUN_INLINE void rays_in_shape(const SUN_GLOBAL Instance *instance, const ShapeRa
 }
 
 // The nearest hit of a shape that counts, in the lanes of `on`. origin, direction: the rays in its space. Rays of light subpaths meet both sides (SUN_WANT_BOTH_SIDES).
-SUN_INLINE ShapeHit meet_shape(const SUN_GLOBAL Instance *instance, uint primitive, vec3 origin, vec3 direction, ShapeRays *rays, const ShapeSearch *search, mask on, int both_sides) {
+SUN_INLINE ShapeHit meet_shape(const SUN_GLOBAL Instance *instance, uint primitive, vec3 origin, vec3 direction, const ShapeRays *rays, const ShapeSearch *search, mask on, int both_sides) {
   const uint flags = instance->flags;
   const int single_sided = !both_sides && (flags & SUN_INSTANCE_SINGLE_SIDED) != 0;
   ShapeHit hit;
   hit.t = (real)(0.0f);
   hit.place = splat3((real)(0.0f));
-  LaneInterval inside;
   if (flags & SUN_INSTANCE_SPHERE) {
     real near, far;
     on = meet_sphere(origin, direction, on, &near, &far);
@@ -112,11 +129,14 @@ SUN_INLINE ShapeHit meet_shape(const SUN_GLOBAL Instance *instance, uint primiti
     if (single_sided) second = on & !on;  // the farther one is met from within
     hit.counts = first | second;
     if (!ANY(hit.counts)) return hit;
-    const mask enters = enter_box(instance, rays, &inside);
-    hit = count_met(primitive, place_along(origin, direction, near), inside, search, near, first & enters);
-    second = second & enters & !hit.counts;
+    real t = near;
+    first = enter_box(instance, rays, first, &t);
+    hit = count_met(primitive, place_along(origin, direction, near), search, t, first);
+    second = second & !hit.counts;
     if (!ANY(second)) return hit;
-    const ShapeHit later = count_met(primitive, place_along(origin, direction, far), inside, search, far, second);
+    t = far;
+    second = enter_box(instance, rays, second, &t);
+    const ShapeHit later = count_met(primitive, place_along(origin, direction, far), search, t, second);
     hit.t = later.counts ? later.t : hit.t;
     hit.place = select3(later.counts, later.place, hit.place);
     hit.counts = hit.counts | later.counts;
@@ -134,11 +154,9 @@ SUN_INLINE ShapeHit meet_shape(const SUN_GLOBAL Instance *instance, uint primiti
   }
   if (single_sided) hit.counts = hit.counts & !(direction.y > 0.0f);
   if (!ANY(hit.counts)) return hit;
-  mask enters = hit.counts;
-  inside.near = (real)(0.0f);
-  inside.far = (real)(SUN_INFINITY);
-  if (!(flags & SUN_INSTANCE_PLANE)) enters = enters & enter_box(instance, rays, &inside);
-  return count_met(primitive, place, inside, search, met, enters);
+  real t = met;
+  if (!(flags & SUN_INSTANCE_PLANE)) hit.counts = enter_box(instance, rays, hit.counts, &t);
+  return count_met(primitive, place, search, t, hit.counts);
 }
 
 // Shapes that opaque rays, or those for what lets light pass, do not look at.

@@ -30,6 +30,21 @@ SUN_FN vec3 shape_place(uint_n flags, real u, real v) {
   return select3(is_shape(flags, SUN_INSTANCE_SPHERE), of_sphere, make_vec3(u, (real)(0.0f), v));
 }
 
+// The same of a place that was found in world space and is nearly one of the shape.
+SUN_FN vec3 shape_place_at(const Matrix *to_object, uint_n flags, vec3 position) {
+  const real *m = to_object->m;
+  vec3 place = make_vec3(m[0] * position.x + m[1] * position.y + m[2] * position.z + m[3], m[4] * position.x + m[5] * position.y + m[6] * position.z + m[7],
+                         m[8] * position.x + m[9] * position.y + m[10] * position.z + m[11]);
+  return select3(is_shape(flags, SUN_INSTANCE_SPHERE), normalize3(place), make_vec3(place.x, (real)(0.0f), place.z));
+}
+
+// The same numbers for one shape with SUN_INSTANCE_ALIGNED: what its zeros add is left out.
+SUN_FN vec3 aligned_shape_place_at(const SUN_GLOBAL float *to_object, uint flags, vec3 position) {
+  vec3 place = make_vec3(to_object[0] * position.x + to_object[3], to_object[5] * position.y + to_object[7], to_object[10] * position.z + to_object[11]);
+  if (flags & SUN_INSTANCE_SPHERE) return normalize3(place);
+  return make_vec3(place.x, (real)(0.0f), place.z);
+}
+
 // A place that is uniform in area, where the shape's space is scaled alike along all axes; ShapePoint's area holds in any case.
 SUN_FN vec3 sample_shape_place(uint_n flags, vec2 u) {
   vec2 disk = square_to_disk(u);
@@ -38,14 +53,13 @@ SUN_FN vec3 sample_shape_place(uint_n flags, vec2 u) {
   return select3(is_shape(flags, SUN_INSTANCE_SPHERE), square_to_uniform_sphere(u), flat);
 }
 
-// What follows from the sum of the columns of to_world, each scaled by its coordinate of the place, and from the normal, not normalised, of the length by
-// which areas grow. `terms`: sums of the sizes of what was added.
-SUN_FN ShapePoint finish_shape_point(uint_n flags, vec3 position, vec3 normal, vec3 terms) {
+// What follows from the sum of the columns of to_world, each scaled by its coordinate of the place; from `growth`, along the normal, of the length by which areas
+// grow, and from `normal`, that direction. `terms`: sums of the sizes of what was added.
+SUN_FN ShapePoint finish_shape_point(uint_n flags, vec3 position, vec3 growth, vec3 normal, vec3 terms) {
   ShapePoint point;
-  normal = select3(is_shape(flags, SUN_INSTANCE_MIRRORED), negate3(normal), normal);
-  real scale = sqrt(dot3(normal, normal));
+  real scale = sqrt(dot3(growth, growth));
   point.position = position;
-  point.normal = normalize3(normal);
+  point.normal = select3(is_shape(flags, SUN_INSTANCE_MIRRORED), negate3(normal), normal);
   point.area = scale * (is_shape(flags, SUN_INSTANCE_SPHERE) ? (real)(4.0f * SUN_PI) : is_shape(flags, SUN_INSTANCE_DISK) ? (real)(SUN_PI) : (real)(4.0f));
   point.offset = max_of3(terms) * 3.81469727e-6f;  // 2^-18 of the largest terms that were added, as of a triangle's coordinates (surface_offset)
   point.uv[0] = point.uv[1] = (real)(0.0f);
@@ -58,23 +72,32 @@ SUN_FN ShapePoint shape_point(const Matrix *to_world, uint_n flags, vec3 place) 
   // By the cofactors: areas across the normal grow by the length of what this makes of it.
   vec3 up = cross3(z, x);
   vec3 round = add3(add3(scale3(cross3(y, z), place.x), scale3(up, place.y)), scale3(cross3(x, y), place.z));
-  vec3 normal = select3(is_shape(flags, SUN_INSTANCE_SPHERE), round, up);
+  vec3 growth = select3(is_shape(flags, SUN_INSTANCE_SPHERE), round, up);
+  vec3 normal = select3(is_shape(flags, SUN_INSTANCE_ROUND), place, normalize3(growth));
   vec3 across = scale3(x, place.x), along = scale3(y, place.y), down = scale3(z, place.z);
   vec3 origin = make_vec3(m[3], m[7], m[11]);
   vec3 terms = make_vec3(fabs(across.x) + fabs(along.x) + fabs(down.x) + fabs(origin.x), fabs(across.y) + fabs(along.y) + fabs(down.y) + fabs(origin.y),
                          fabs(across.z) + fabs(along.z) + fabs(down.z) + fabs(origin.z));
-  return finish_shape_point(flags, add3(add3(add3(across, along), down), origin), normal, terms);
+  return finish_shape_point(flags, add3(add3(add3(across, along), down), origin), growth, normal, terms);
 }
 
 // The same numbers for one shape with SUN_INSTANCE_ALIGNED: what its zeros add is left out.
 SUN_FN ShapePoint aligned_shape_point(const SUN_GLOBAL float *to_world, uint flags, vec3 place) {
-  const float x = to_world[0], y = to_world[5], z = to_world[10];
+  const float x = to_world[0], y = to_world[5], z = to_world[10], up = z * x;
   vec3 origin = make_vec3((real)(to_world[3]), (real)(to_world[7]), (real)(to_world[11]));
-  vec3 normal = make_vec3((real)(0.0f), (real)(z * x), (real)(0.0f));
-  if (flags & SUN_INSTANCE_SPHERE) normal = make_vec3((y * z) * place.x, normal.y * place.y, (x * y) * place.z);
+  vec3 growth, normal;
+  if (flags & SUN_INSTANCE_SPHERE) {
+    growth = make_vec3((y * z) * place.x, up * place.y, (x * y) * place.z);
+    normal = place;
+    if (!(flags & SUN_INSTANCE_ROUND)) normal = normalize3(growth);
+  } else {
+    const float inverse = 1.0f / sqrt(up * up);
+    growth = make_vec3((real)(0.0f), (real)(up), (real)(0.0f));
+    normal = make_vec3((real)(0.0f), (real)(up * inverse), (real)(0.0f));
+  }
   vec3 part = make_vec3(x * place.x, y * place.y, z * place.z);
   vec3 terms = make_vec3(fabs(part.x) + fabs(origin.x), fabs(part.y) + fabs(origin.y), fabs(part.z) + fabs(origin.z));
-  return finish_shape_point((uint_n)(flags), add3(part, origin), normal, terms);
+  return finish_shape_point((uint_n)(flags), add3(part, origin), growth, normal, terms);
 }
 
 // A sphere's are those of environments; a disk's and a quad's run over the square around it, from the corner at -x, -z; a plane's are x and z.

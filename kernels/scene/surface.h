@@ -48,7 +48,7 @@ typedef struct Corners {
 } Corners;
 
 // What a shape's point has in place of a triangle's; after load_corners, whose corners are all one for shapes.
-SUN_FN ShapePoint point_of_shape(const Scene *scene, uint_n instance, uint_n flags, vec3 place, mask textured) {
+SUN_INLINE ShapePoint point_of_shape(const Scene *scene, uint_n instance, uint_n flags, vec3 place, mask textured) {
   ShapePoint point;
   if (LANES_ALIKE(scene) && (FIRST_LANE(flags) & SUN_INSTANCE_ALIGNED)) {
     point = aligned_shape_point(scene->instances[FIRST_LANE(instance)].to_world, FIRST_LANE(flags), place);
@@ -62,7 +62,7 @@ SUN_FN ShapePoint point_of_shape(const Scene *scene, uint_n instance, uint_n fla
 
 SUN_FN mask is_textured(uint_n material_flags) { return (material_flags & (uint_n)(SUN_MATERIAL_TEXTURED)) != (uint_n)(0); }
 
-SUN_FN Corners load_corners(const Scene *scene, uint_n instance, uint_n primitive) {
+SUN_INLINE Corners load_corners(const Scene *scene, uint_n instance, uint_n primitive) {
   Corners c;
   Quad triangle;
   SCENE_QUAD(triangle, scene, triangles, primitive, vertex[0]);
@@ -185,8 +185,18 @@ SUN_FN void surface_coordinates(const Scene *scene, Surface *s, const Corners *c
 }
 #endif
 
-// wo: unit vector back along the ray.
-SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
+// The place on the shape that is hit, from where the ray met it: for shapes that are still.
+SUN_INLINE vec3 place_of_meeting(const Scene *scene, uint_n instance, vec3 position) {
+  uint_n flags;
+  SCENE_UINT(flags, scene, instances, instance, flags);
+  if (LANES_ALIKE(scene) && (FIRST_LANE(flags) & SUN_INSTANCE_ALIGNED))
+    return aligned_shape_place_at(scene->instances[FIRST_LANE(instance)].to_object, FIRST_LANE(flags), position);
+  Matrix to_object = instance_to_object(scene, instance, flags);
+  return shape_place_at(&to_object, flags, position);
+}
+
+// wo: unit vector back along the ray. `place`: on the shape that is hit, in its space; where it is 0 the hit's u and v tell.
+SUN_INLINE Surface surface_at(const Scene *scene, const HitLanes *hit, const vec3 *place, vec3 wo) {
   Surface s;
   Corners c = load_corners(scene, hit->instance, hit->primitive);
   s.material = c.material;
@@ -203,11 +213,11 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
   s.area = s.offset = (real)(0.0f);
 #endif
 #if SUN_SHAPES
-  mask shape = hit->hit & is_shape(c.flags, SUN_INSTANCE_SHAPE);
+  mask shape = LANES_ALIKE(scene) ? !(mask)(0) : hit->hit & is_shape(c.flags, SUN_INSTANCE_SHAPE);
   real shape_uv[2];
   shape_uv[0] = shape_uv[1] = (real)(0.0f);
   if (ANY(shape)) {
-    ShapePoint point = point_of_shape(scene, hit->instance, c.flags, shape_place(c.flags, hit->u, hit->v), shape & is_textured(s.material_flags));
+    ShapePoint point = point_of_shape(scene, hit->instance, c.flags, place ? *place : shape_place(c.flags, hit->u, hit->v), shape & is_textured(s.material_flags));
     s.position = select3(shape, point.position, s.position);
     front_normal = select3(shape, point.normal, front_normal);
     s.area = shape ? point.area : s.area;
@@ -289,9 +299,19 @@ SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) {
 #endif
 #endif
   s.unbent = ns;
-  s.shading = frame_of_normal(bend_normal(ns, wo, s.normal));
+#if SUN_TRIANGLES
+  vec3 bent = bend_normal(ns, wo, s.normal);
+#if SUN_SHAPES
+  bent = select3(shape, ns, bent);  // the shading normal is the true one
+#endif
+  s.shading = frame_of_normal(bent);
+#else
+  s.shading = frame_of_normal(ns);
+#endif
   return s;
 }
+
+SUN_FN Surface make_surface(const Scene *scene, const HitLanes *hit, vec3 wo) { return surface_at(scene, hit, 0, wo); }
 
 // Where a ray to the side `direction` of a surface starts.
 SUN_FN vec3 offset_origin(vec3 position, vec3 normal, real offset, vec3 direction) {
@@ -302,6 +322,8 @@ SUN_FN vec3 surface_origin(const Surface *s, vec3 direction) { return offset_ori
 
 #if SUN_TEXTURES
 SUN_FN Texel4 material_texel(const Scene *scene, const Surface *s, uint slot, mask wanted) {
+  if (LANES_ALIKE(scene))
+    return sample_slot_alike(&scene->pages, scene->textures, scene->texture_refs, scene->tables, scene->materials[FIRST_LANE(s->material)].slot[slot], s->uv0, s->uv1, wanted);
   uint_n ref;
   SCENE_UINT(ref, scene, materials, s->material, slot[slot]);
   return sample_slot(&scene->pages, scene->textures, scene->texture_refs, scene->tables, ref, s->uv0, s->uv1, wanted);
@@ -348,7 +370,7 @@ SUN_FN vec3 surface_emission(const Scene *scene, const Surface *s, mask wanted) 
 }
 
 // The bsdf's parameters, textures looked up.
-SUN_FN Bsdf surface_bsdf(const Scene *scene, const Surface *s, mask wanted) {
+SUN_INLINE Bsdf surface_bsdf(const Scene *scene, const Surface *s, mask wanted) {
   Bsdf b;
   SCENE_VEC3(b.base, scene, materials, s->material, base_color[0]);
 #if SUN_TEXTURES

@@ -33,6 +33,7 @@ SUN_STATIC_ASSERT(sizeof(VertexExtra) == 48, vertex_extra_is_48_bytes);
 #define SUN_INSTANCE_IDENTITY 1u  // to_world is exactly the identity: rays and vertices are used as they are
 #define SUN_INSTANCE_MIRRORED 2u  // determinant < 0: the front, counter-clockwise in mesh space, reads clockwise in world space
 #define SUN_INSTANCE_ALIGNED 4u   // of shapes: both matrices scale along the axes and move, no more
+#define SUN_INSTANCE_ROUND 8u     // of spheres: aligned, and scaled alike along all axes
 // An analytic shape, in a space of its own: a sphere of radius 1, or, in y = 0 with the front towards +y, a disk of radius 1, a quad from -1 to 1, and all
 // of the plane. One Triangle stands for it (its primitive number, its material), which no ray can hit. Planes have no bounds: their instances stand
 // behind all others, and trees know nothing of them.
