@@ -73,11 +73,12 @@ Albedo reflected(const View &view) {
 double reflected_and_refracted(const View &view, float eta) {
   if (view.smooth()) return 1.0;
   double sum = 0;
+  const float inverse = 1.0f / eta;
   for (const Facet &f : view.facets) {
-    float cosine_far;
-    const double reflectance = fresnel_dielectric(f.cosine_oh, eta, &cosine_far);
+    const float cosine_far = refracted_cosine(f.cosine_oh, inverse);
+    const double reflectance = fresnel_dielectric(f.cosine_oh, eta, cosine_far);
     sum += reflectance * f.mirrored;
-    if (reflectance < 1.0) sum += (1.0 - reflectance) * f.weight * view.unmasked(-refract_about(view.wo, f.h, eta, f.cosine_oh, cosine_far).z);
+    if (reflectance < 1.0) sum += (1.0 - reflectance) * f.weight * view.unmasked(-refract_about(view.wo, f.h, inverse, f.cosine_oh, cosine_far).z);
   }
   return sum;
 }

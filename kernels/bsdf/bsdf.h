@@ -46,8 +46,8 @@ SUN_FN Facet facet_of(const Lobes *l, real cosine_oh) {
   f.reflected = lerp3(l->r0, l->r90, w);
   f.transmitted = lerp3(l->t0, l->t90, w);
   if (ANY(l->some_glass)) {
-    real cosine_far;
-    real exact = fresnel_dielectric(cosine_oh, l->eta, &cosine_far);
+    real cosine_far = refracted_cosine(cosine_oh, l->inverse_eta);
+    real exact = fresnel_dielectric(cosine_oh, l->eta, cosine_far);
     real scaled = cosine_far > 0.0f ? exact * l->glass_f90 : (real)(1.0f);  // nothing can leave under total reflection
     mask bends = !(fabs(l->eta - 1.0f) < SUN_SAME_IOR);
     scaled = bends ? scaled : (real)(0.0f);
@@ -136,9 +136,8 @@ SUN_FN BsdfSample lobes_sample(const Lobes *l, const SUN_GLOBAL float *tables, v
     mask fits = wi.z > 0.0f;
     wi.z = through ? -wi.z : wi.z;
     if (ANY(through & l->refracts)) {
-      real cosine_far;
-      fresnel_dielectric(cosine_oh, l->eta, &cosine_far);
-      vec3 refracted = refract_about(wo, h, l->eta, cosine_oh, cosine_far);
+      real cosine_far = refracted_cosine(cosine_oh, l->inverse_eta);
+      vec3 refracted = refract_about(wo, h, l->inverse_eta, cosine_oh, cosine_far);
       mask bent = through & l->refracts;
       wi = select3(bent, refracted, wi);
       fits = bent ? (refracted.z < 0.0f) & (cosine_far > 0.0f) : fits;
@@ -148,7 +147,7 @@ SUN_FN BsdfSample lobes_sample(const Lobes *l, const SUN_GLOBAL float *tables, v
     wi = select3(straight, negate3(wo), wi);
     fits = fits | straight;
     real chance = through ? 1.0f - facet.reflection_chance : facet.reflection_chance;
-    real thinning = (through & l->refracts & !straight) ? 1.0f / (l->eta * l->eta) : (real)(1.0f);
+    real thinning = (through & l->refracts & !straight) ? l->inverse_eta * l->inverse_eta : (real)(1.0f);
     delta_weight = scale3(select3(through, facet.transmitted, facet.reflected), thinning / max_real(l->pick_facets * chance, (real)(1e-20f)));
     s.wi = select3(facets, wi, s.wi);
     s.transmitted = facets ? through : s.transmitted;
@@ -163,26 +162,23 @@ SUN_FN BsdfSample lobes_sample(const Lobes *l, const SUN_GLOBAL float *tables, v
   return s;
 }
 
-// The deltas of wo, both at once, for those who follow each: mirrored, and refracted or straight on. Weights are f |cos i| over a chance of 1, and
-// what has none is black.
+// The deltas under the cosine of wo, both at once, for those who follow each: mirrored, and refracted or straight on. Weights are f |cos i| over a chance of 1,
+// and what has none is black.
 typedef struct Deltas {
   vec3 reflected, transmitted;
-  vec3 wi_transmitted;  // reflected: (-wo.x, -wo.y, wo.z)
-  mask straight;        // what is transmitted is not bent
+  real cosine_far;  // see refract_about
+  mask straight;    // what is transmitted is not bent
 } Deltas;
 
-SUN_FN Deltas lobes_deltas(const Lobes *l, vec3 wo) {
+SUN_FN Deltas lobes_deltas(const Lobes *l, real cosine_o) {
   Deltas d;
-  real cosine = clamp_real(wo.z, (real)(0.0f), (real)(1.0f));
+  real cosine = clamp_real(cosine_o, (real)(0.0f), (real)(1.0f));
   Facet facet = facet_of(l, cosine);
-  real cosine_far;
-  fresnel_dielectric(cosine, l->eta, &cosine_far);
+  d.cosine_far = refracted_cosine(cosine, l->inverse_eta);
   d.straight = (fabs(l->eta - 1.0f) < SUN_SAME_IOR) | !l->refracts;
-  vec3 refracted = refract_about(wo, make_vec3((real)(0.0f), (real)(0.0f), (real)(1.0f)), l->eta, cosine, cosine_far);
-  d.wi_transmitted = select3(d.straight, negate3(wo), refracted);
-  mask seen = l->specular & (wo.z > 0.0f);
-  mask leaves = d.straight | (cosine_far > 0.0f);
-  real thinning = d.straight ? (real)(1.0f) : 1.0f / (l->eta * l->eta);
+  mask seen = l->specular & (cosine_o > 0.0f);
+  mask leaves = d.straight | (d.cosine_far > 0.0f);
+  real thinning = d.straight ? (real)(1.0f) : l->inverse_eta * l->inverse_eta;
   d.reflected = select3(seen & l->delta_reflection, facet.reflected, splat3((real)(0.0f)));
   d.transmitted = select3(seen & l->delta_transmission & leaves, scale3(facet.transmitted, thinning), splat3((real)(0.0f)));
   return d;
@@ -224,8 +220,8 @@ SUN_FN vec3 bsdf_albedo(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
     real s = s0 * at_o.a + b->f90 * at_o.b + returned_share(s0, b->f90, mean_lost) * at_o.lost;
     vec3 full = add3(scale3(metal, b->metallic), add3(scale3(coat, dielectric - clear), scale3(b->base, (dielectric - clear) * (1.0f - s))));
     vec3 thin = add3(coat, sub3(b->base, mul3(b->base, coat)));
-    real cosine_far;
-    real exact = fresnel_dielectric(cosine_o, b->eta, &cosine_far);
+    real cosine_far = refracted_cosine(cosine_o, 1.0f / b->eta);
+    real exact = fresnel_dielectric(cosine_o, b->eta, cosine_far);
     real scaled = cosine_far > 0.0f ? exact * b->f90 : one;
     vec3 glass = add3(splat3(scaled), scale3(b->base, 1.0f - scaled));
     sum = select3(b->specular, add3(full, scale3(select3(b->solid, glass, thin), clear)), sum);

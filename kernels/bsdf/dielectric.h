@@ -9,21 +9,22 @@ SUN_NAMESPACE_BEGIN
 // Media nearer than this pass light straight on: the half vector of a refraction would have no digits left.
 #define SUN_SAME_IOR 1e-4f
 
-// Unpolarised reflectance and the cosine on the far side (0 under total internal reflection, where the reflectance is 1).
-SUN_FN real fresnel_dielectric(real cosine, real eta, real *cosine_far) {
-  real squared = 1.0f - (1.0f - cosine * cosine) / (eta * eta);
-  mask passes = squared > 0.0f;
-  real far = sqrt(passes ? squared : (real)(0.0f));
-  real parallel = (eta * cosine - far) / max_real(eta * cosine + far, (real)(1e-20f));
-  real perpendicular = (cosine - eta * far) / max_real(cosine + eta * far, (real)(1e-20f));
-  *cosine_far = far;
-  return passes ? 0.5f * (parallel * parallel + perpendicular * perpendicular) : (real)(1.0f);
+// Snell's law: the cosine on the far side; 0 under total internal reflection.
+SUN_FN real refracted_cosine(real cosine, real inverse_eta) { return sqrt_or_zero(1.0f - (1.0f - cosine * cosine) * (inverse_eta * inverse_eta)); }
+
+// Unpolarised reflectance, 1 under total internal reflection. The mean of the squares of (eta c - f) / (eta c + f) and (c - eta f) / (c + eta f), in one quotient.
+SUN_FN real fresnel_dielectric(real cosine, real eta, real cosine_far) {
+  real near = eta * cosine, far = eta * cosine_far;
+  real p = near + cosine_far, s = cosine + far;
+  real parallel = (near - cosine_far) * s, perpendicular = (cosine - far) * p, both = p * s;
+  mask passes = cosine_far > 0.0f;
+  real mean = 0.5f * (parallel * parallel + perpendicular * perpendicular) / (passes ? both * both : (real)(1.0f));
+  return passes ? mean : (real)(1.0f);
 }
 
-// Snell's law: wo refracted at a facet with normal h.
-SUN_FN vec3 refract_about(vec3 wo, vec3 h, real eta, real cosine_o, real cosine_far) {
-  real inverse = 1.0f / eta;
-  return add3(scale3(wo, -inverse), scale3(h, cosine_o * inverse - cosine_far));
+// wo refracted at a facet with normal h.
+SUN_FN vec3 refract_about(vec3 wo, vec3 h, real inverse_eta, real cosine_o, real cosine_far) {
+  return add3(scale3(wo, -inverse_eta), scale3(h, cosine_o * inverse_eta - cosine_far));
 }
 
 // The facet normal, on the side of wo, that refracts wo into wi. Not defined for eta = 1.

@@ -29,7 +29,7 @@ typedef struct Lobes {
   vec3 t0, t90;            // thin facets transmit likewise
   vec3 glass_tint;         // share of solid glass * base colour
   real glass, glass_f90;   // share of solid glass
-  real eta, alpha;
+  real eta, inverse_eta, alpha;
   real eta_axis, alpha_axis;  // places in the tables
   mask coated;             // reflects by the tables of GGX: has metal, or a coat of Schlick's
   mask some_glass;         // glass > 0
@@ -47,7 +47,7 @@ typedef struct Lobes {
 } Lobes;
 
 // wo.z > 0.
-SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) {
+SUN_INLINE Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) {
   const real zero = (real)(0.0f);
   const vec3 black = splat3(zero);
   Lobes l;
@@ -59,9 +59,8 @@ SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
   l.chance_least = zero;
   l.chance_most = (real)(1.0f);
   l.alpha = smooth ? (real)(SUN_ALPHA_SMOOTH) : b->alpha;
-  l.alpha_axis = smooth ? zero : table_axis(b->alpha);
   l.eta = b->eta;
-  l.eta_axis = glass_axis(b->eta);
+  l.inverse_eta = 1.0f / b->eta;
   l.refracts = b->solid;
   l.glass = (b->solid & b->specular) ? clear : zero;
   l.glass_f90 = b->f90;
@@ -71,6 +70,11 @@ SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
   l.delta_reflection = smooth;
   l.delta_transmission = smooth | (b->solid & (fabs(b->eta - 1.0f) < SUN_SAME_IOR));
   l.rough_glass = l.some_glass & !l.delta_transmission;
+  l.alpha_axis = l.eta_axis = zero;
+  if (ANY(l.coated | l.rough_glass)) {
+    l.alpha_axis = smooth ? zero : table_axis(b->alpha);
+    l.eta_axis = glass_axis(b->eta);
+  }
   l.diffuse = scale3(b->base, (dielectric - clear) * SUN_INV_PI);
   l.r0 = l.r90 = l.t0 = l.t90 = l.above = l.below = l.glass_below = black;
   l.s0 = l.s90 = l.s_lost = l.glass_above = zero;
@@ -115,7 +119,7 @@ SUN_FN Lobes bsdf_lobes(const Bsdf *b, const SUN_GLOBAL float *tables, vec3 wo) 
     lost = l.rough_glass ? lost : zero;
     real through = mean_transmittance(l.eta) * min_real(mean_lost, far_lost) / max_real(mean_lost, (real)(1e-6f));
     l.glass_above = l.glass * (1.0f - through) * lost * lobe_scale(mean_lost);
-    l.glass_below = scale3(l.glass_tint, through * lost * lobe_scale(far_lost) / (l.eta * l.eta));
+    l.glass_below = scale3(l.glass_tint, through * lost * lobe_scale(far_lost) * (l.inverse_eta * l.inverse_eta));
     above = above + l.glass * (1.0f - through) * lost;
     below = below + luminance(l.glass_tint) * through * lost;
   }

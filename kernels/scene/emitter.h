@@ -120,12 +120,12 @@ SUN_FN LightSample sample_of_light(const LightLanes *lanes, vec3 position) {
   real squared = dot3(to, to);
   mask apart = squared > 0.0f;
   real safe = apart ? squared : (real)(1.0f);
-  real distance = sqrt(safe);
+  real distance = sqrt(safe), inverse = 1.0f / distance;
   LightSample sample;
-  sample.direction = select3(placed, scale3(to, 1.0f / distance), negate3(l.axis));
+  sample.direction = select3(placed, scale3(to, inverse), negate3(l.axis));
   sample.distance = placed ? (apart ? distance : (real)(0.0f)) : (real)(SUN_BEYOND);
   real factor = spot_share(&l, -dot3(sample.direction, l.axis));
-  factor = placed ? (apart ? factor / safe : (real)(0.0f)) : factor;
+  factor = placed ? (apart ? factor * (inverse * inverse) : (real)(0.0f)) : factor;
   sample.radiance = scale3(l.intensity, factor);
   sample.spread = placed ? light_cone_pdf(l.kind, l.cos_outer) : (real)(1.0f);
   return sample;

@@ -72,194 +72,265 @@ SUN_FN vec3 arriving(const Scene *scene, const TraceScene *tree, const DirectSam
   return worth;
 }
 
-// Lanes that are shaded at once: those that hit one shape, whose records are read once, or all that hit triangles. Takes them out of `left`.
-SUN_FN HitLanes take_group(const SUN_GLOBAL Frame *frame, const TraceScene *tree, const HitLanes *hit, mask *left, int *alike) {
-  HitLanes group = *hit;
-  group.hit = *left;
-  *alike = 0;
+// What is known beforehand of lanes that are shaded at once. What this rules out is left out when the kernel is compiled; the numbers are the same.
+#define SUN_GROUP_ANY 0
+#define SUN_GROUP_MATT 1   // one shape, and nothing but diffuse
+#define SUN_GROUP_CLEAR 2  // one shape, and nothing but smooth solid glass
+#define SUN_GROUP_GLOSS 3  // one shape, and a smooth coat over what is diffuse
+
+typedef struct Group {
+  HitLanes hit;
+  int alike;  // all lanes, those that are off included, carry one shape, whose records are read once
+  int kind;
+} Group;
+
+// Lanes that hit one shape, or all that hit triangles. Takes them out of `left`.
+SUN_FN Group take_group(const Scene *scene, const TraceScene *tree, const HitLanes *hit, mask *left) {
+  Group group;
+  group.hit = *hit;
+  group.hit.hit = *left;
+  group.alike = 0;
+  group.kind = SUN_GROUP_ANY;
   if (SUN_FEW_SHAPES) {
-    const uint number = least_lane(*left ? hit->instance : (uint_n)(SUN_NONE));
-    *alike = number >= frame->first_shape;
-    const mask same = *alike ? hit->instance == (uint_n)(number) : hit->instance < (uint_n)(frame->first_shape);
-    group.hit = *left & same;
-    if (*alike) {
-      group.instance = (uint_n)(number);
-      group.primitive = (uint_n)(tree->roots[number]);
+    const uint first_shape = scene->frame->first_shape, number = least_lane(*left ? hit->instance : (uint_n)(SUN_NONE));
+    group.alike = number >= first_shape;
+    const mask same = group.alike ? hit->instance == (uint_n)(number) : hit->instance < (uint_n)(first_shape);
+    group.hit.hit = *left & same;
+    if (group.alike) {
+      const uint primitive = tree->roots[number];
+      const SUN_GLOBAL Material *material = &scene->materials[scene->triangles[primitive].material];
+      group.hit.instance = (uint_n)(number);
+      group.hit.primitive = (uint_n)(primitive);
+      const uint flags = material->flags, solid = flags & SUN_MATERIAL_VOLUME;
+      const int plain = !(flags & SUN_MATERIAL_TEXTURED) && material->metallic == 0.0f && material->roughness * material->roughness < SUN_ALPHA_SMOOTH;
+      if (!(flags & SUN_MATERIAL_SPECULAR)) group.kind = SUN_GROUP_MATT;
+      else if (plain && solid && material->transmission == 1.0f) group.kind = SUN_GROUP_CLEAR;
+      else if (plain && !solid && material->transmission == 0.0f) group.kind = SUN_GROUP_GLOSS;
     }
   }
-  *left = *left & !group.hit;
+  *left = *left & !group.hit.hit;
   return group;
 }
 
-// What LANES samples see. `film` may be 0: then what they see is the result alone.
-SUN_INLINE vec3 walk_trees(const Scene *opened, const TraceScene *tree, const FilmView *film, const PathNumber *place, const SamplerKey *sample_key,
-                           const CameraRay *camera_of, mask active, uint *rays_traced) {
+// The trees of LANES samples.
+typedef struct Trees {
+  Branch now;
+  vec3 seen;
+  uint_n level;    // lanes wait at levels of their own: how many rays wait
+  uint top;        // no lane waits at this level or above
+  mask on;         // lanes whose `now` is a ray that is to be followed
+  mask limited;    // rays were left out, being too deep
+} Trees;
+
+// Adds what LANES rays bring, of the trees in `shines`.
+SUN_FN void see(const SUN_GLOBAL Frame *frame, const FilmView *film, const Path *path, Trees *trees, mask shines, vec3 radiance) {
+  vec3 worth = mul3(trees->now.throughput, radiance);
+  shines = shines & (max_of3(radiance) > 0.0f);
+  if (film && ANY(shines)) film_contribute_lanes(frame, film, shines, path, trees->now.depth, worth);
+  trees->seen = select3(shines, add3(trees->seen, worth), trees->seen);
+}
+
+// One lane's ray waits in waiting[k], k below its level.
+SUN_FN void put_aside(Branch *waiting, Trees *trees, mask waits, const Branch *later) {
+  if (!ANY(waits)) return;
+  for (uint k = 0; k < trees->top; k++) {
+    mask here = waits & (trees->level == (uint_n)(k));
+    if (ANY(here)) waiting[k] = select_branch(here, later, &waiting[k]);
+  }
+  trees->level = waits ? trees->level + (uint_n)(1) : trees->level;
+  if (ANY(trees->level > (uint_n)(trees->top))) waiting[trees->top++] = *later;
+}
+
+SUN_FN void take_up(const Branch *waiting, Trees *trees, mask takes) {
+  if (!ANY(takes)) return;
+  for (uint k = 0; k < trees->top; k++) {
+    mask here = takes & (trees->level == (uint_n)(k + 1));
+    if (ANY(here)) trees->now = select_branch(here, &waiting[k], &trees->now);
+  }
+  trees->level = takes ? trees->level - (uint_n)(1) : trees->level;
+  while (trees->top > 0 && !ANY(trees->level >= (uint_n)(trees->top))) trees->top--;
+}
+
+// What the surfaces of a group emit and scatter is seen, and the rays that leave them are to be followed.
+SUN_INLINE void shade_group(const Scene *opened, const TraceScene *tree, const FilmView *film, const Path *path, const SamplerKey *key, const Group *group, int alike,
+                            int kind, Branch *waiting, Trees *trees, uint *rays_traced) {
   Scene of_group = *opened;
+  of_group.alike = alike;
   const Scene *scene = &of_group;
   const SUN_GLOBAL Frame *frame = scene->frame;
-  const vec3 black = splat3((real)(0.0f));
+  const HitLanes *hit = &group->hit;
+  const mask all = !(mask)(0), nowhere = (mask)(0);
   const uint_n none = (uint_n)(SUN_NONE), one = (uint_n)(1);
-  const mask nowhere = active & !active;
-  const SamplerKey key = *sample_key;
-  const CameraRay camera = *camera_of;
   const real cutoff = (real)(frame->cutoff);
-  const vec3 ambient = make_vec3((real)(frame->ambient[0]), (real)(frame->ambient[1]), (real)(frame->ambient[2]));
-  Path path;
-  path.pixel = place->y * (uint_n)(frame->tile_width) + place->x;
-  path.sample = place->sample;
-  path.vertex = (uint_n)(0);
-  Branch now;
-  now.origin = camera.origin;
-  now.direction = camera.direction;
-  now.throughput = splat3(camera.weight);
-  now.depth = (uint_n)(0);
-  now.passed_t = (real)(0.0f);
-  now.passed_instance = now.passed_primitive = none;
-  vec3 seen = black;
-  // Lanes wait at levels of their own; level k of all lanes stands in waiting[k].
-  Branch waiting[SUN_WHITTED_DEPTH];
-  uint_n level = (uint_n)(0), deepest = (uint_n)(0);
-  mask limited = nowhere, escaped = nowhere, layered = nowhere;
-  uint top = 0;  // no lane waits at this level or above
-  while (ANY(active)) {
-    Rays rays = fresh_rays(now.origin, now.direction, (real)(SUN_INFINITY), scene->moment.time);
-    if (SUN_PASSABLE) {
-      rays.passed_t = now.passed_t;
-      rays.passed_instance = now.passed_instance;
-      rays.passed_primitive = now.passed_primitive;
+  Branch *now = &trees->now;
+  vec3 wo = negate3(now->direction);
+  // Where the ray is at hand it tells more of a shape's place than u and v, which are rounded.
+#if SUN_SHAPES && !SUN_MOTION
+  vec3 place = place_of_meeting(scene, hit->instance, place_along(now->origin, now->direction, hit->t));
+  Surface surface = surface_at(scene, hit, &place, wo);
+#else
+  Surface surface = make_surface(scene, hit, wo);
+#endif
+  mask present = hit->hit, straight = nowhere;
+  if (SUN_PASSABLE) {
+    real alpha = surface_alpha(scene, &surface, hit->hit);
+    mask passed = hit->hit & (alpha < 1.0f);
+    if (ANY(passed)) passed = passed & (alpha <= hash_coin(key, path->vertex, hit->instance, hit->primitive, 0));
+    straight = passed;
+    present = present & !passed;
+  }
+  now->throughput = select3(present, mul3(now->throughput, surface_absorption(scene, &surface, hit->t, present)), now->throughput);
+  mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
+  mask scatters = present & !unlit;
+  mask deep = scatters & (now->depth >= (uint_n)(frame->max_depth));
+  Branch onward = *now, mirror = *now;
+  mask through = nowhere, mirrored = nowhere;
+  if (ANY(scatters)) {
+    Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
+    if (kind == SUN_GROUP_MATT) bsdf.specular = nowhere;
+    if (kind == SUN_GROUP_CLEAR || kind == SUN_GROUP_GLOSS) {
+      bsdf.specular = all;
+      bsdf.solid = kind == SUN_GROUP_CLEAR ? all : nowhere;
+      bsdf.metallic = bsdf.alpha = (real)(0.0f);
+      bsdf.transmission = (real)(kind == SUN_GROUP_CLEAR ? 1.0f : 0.0f);
     }
-    HitLanes hit = closest_lanes(frame, tree, &rays, active, SUN_WANT_ALL);
-    if (film) rays_traced[0] += count_lanes(active);
-    vec3 radiance = black;  // that reaches the ray's origin
-    mask missed = active & !hit.hit;
-    if (ANY(missed)) {
-      mask shown = (frame->flags & SUN_FRAME_TRANSPARENT) ? missed & (now.depth != (uint_n)(0)) : missed;
-      radiance = select3(shown, environment_radiance(&frame->environment, scene->environment_texels, now.direction), radiance);
-      escaped = escaped | (missed & (now.depth == (uint_n)(0)));
+    vec3 wo_local = to_local(&surface.shading, wo);
+    Lobes lobes = bsdf_lobes(&bsdf, scene->tables, wo_local);
+    mask lit = scatters & !deep;
+    vec3 diffuse = scale3(bsdf.base, (1.0f - bsdf.metallic) * (1.0f - bsdf.transmission));
+    vec3 direct = mul3(make_vec3((real)(frame->ambient[0]), (real)(frame->ambient[1]), (real)(frame->ambient[2])), diffuse);
+    mask spread = lit & lobes_spread(&lobes);
+    for (uint light = 0; ANY(spread) && light < frame->light_count; light++) {
+      DirectSample sample = direct_from_light(scene, &surface, &lobes, wo_local, light, spread);
+      if (!ANY(sample.valid)) continue;
+      if (film) rays_traced[1] += count_lanes(sample.valid);
+      direct = add3(direct, arriving(scene, tree, &sample));
     }
-    // Lanes that go on: into a solid, mirrored, straight. Where they go is in `onward` and in `mirror`.
-    mask through = nowhere, mirrored = nowhere, straight = nowhere;
-    Branch onward = now, mirror = now;
-    vec3 wo = negate3(now.direction);
-    if (film && layers_wanted(frame)) {
-      HitLanes first = hit;
-      first.hit = hit.hit & (now.depth == (uint_n)(0)) & !layered;
-      if (ANY(first.hit)) layered = layered | first_hit_layers(opened, film, &path, &first, wo, camera.weight);
-    }
-    for (mask left = hit.hit; ANY(left);) {
-      HitLanes group = take_group(frame, tree, &hit, &left, &of_group.alike);
-      Surface surface = make_surface(scene, &group, wo);
-      mask present = group.hit;
-      if (SUN_PASSABLE) {
-        real alpha = surface_alpha(scene, &surface, group.hit);
-        mask passed = group.hit & (alpha < 1.0f);
-        if (ANY(passed)) passed = passed & (alpha <= hash_coin(&key, path.vertex, group.instance, group.primitive, 0));
-        straight = straight | passed;
-        present = present & !passed;
-      }
-      vec3 throughput = mul3(now.throughput, surface_absorption(scene, &surface, group.t, present));
-      now.throughput = select3(present, throughput, now.throughput);
-      onward.throughput = select3(present, throughput, onward.throughput);
-      radiance = select3(present, surface_emission(scene, &surface, present), radiance);
-      mask unlit = (surface.material_flags & (uint_n)(SUN_MATERIAL_UNLIT)) != (uint_n)(0);
-      mask scatters = present & !unlit;
-      if (!ANY(scatters)) continue;
-      mask deep = scatters & (now.depth >= (uint_n)(frame->max_depth));
-      Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
-      vec3 wo_local = to_local(&surface.shading, wo);
-      Lobes lobes = bsdf_lobes(&bsdf, scene->tables, wo_local);
-      mask lit = scatters & !deep;
-      vec3 diffuse = scale3(bsdf.base, (1.0f - bsdf.metallic) * (1.0f - bsdf.transmission));
-      vec3 direct = mul3(ambient, diffuse);
-      mask spread = lit & lobes_spread(&lobes);
-      for (uint light = 0; ANY(spread) && light < frame->light_count; light++) {
-        DirectSample sample = direct_from_light(scene, &surface, &lobes, wo_local, light, spread);
-        if (!ANY(sample.valid)) continue;
-        if (film) rays_traced[1] += count_lanes(sample.valid);
-        direct = add3(direct, arriving(scene, tree, &sample));
-      }
-      // Light that this surface scatters is of the next depth; the ray's own depth has its emission.
-      vec3 worth = mul3(now.throughput, direct);
-      mask shines = lit & (max_of3(direct) > 0.0f);
-      if (film && ANY(shines)) film_contribute_keyed(frame, film, shines, &path, SUN_FILM_KEY_DIRECT(path.vertex, 0u), now.depth + one, worth);
-      seen = select3(shines, add3(seen, worth), seen);
-      if (!ANY(scatters & lobes.specular)) continue;
-
-      Deltas deltas = lobes_deltas(&lobes, wo_local);
-      vec3 reflected = mul3(now.throughput, deltas.reflected);
+    // Light that this surface scatters is of the next depth; the ray's own depth has its emission.
+    vec3 worth = mul3(now->throughput, direct);
+    mask shines = lit & (max_of3(direct) > 0.0f);
+    if (film && ANY(shines)) film_contribute_keyed(frame, film, shines, path, SUN_FILM_KEY_DIRECT(path->vertex, 0u), now->depth + one, worth);
+    trees->seen = select3(shines, add3(trees->seen, worth), trees->seen);
+    if (ANY(scatters & lobes.specular)) {
+      const vec3 normal = surface.shading.normal;
+      Deltas deltas = lobes_deltas(&lobes, wo_local.z);
+      vec3 reflected = mul3(now->throughput, deltas.reflected);
       vec3 size = make_vec3(fabs(reflected.x), fabs(reflected.y), fabs(reflected.z));
       mask returned = scatters & (max_of3(size) > cutoff);
       if (ANY(returned)) {
-        vec3 mirror_local = make_vec3(-wo_local.x, -wo_local.y, wo_local.z);
-        vec3 direction = normalize3(to_world(&surface.shading, mirror_local));
-        returned = returned & (dot3(direction, surface.normal) > 0.0f);
-        mirror.direction = select3(returned, direction, mirror.direction);
-        mirror.origin = select3(returned, surface_origin(&surface, direction), mirror.origin);
-        mirror.throughput = select3(returned, reflected, mirror.throughput);
-        mirrored = mirrored | (returned & !deep);
-        limited = limited | (returned & deep);
+        mirror.direction = mirror_about(wo, normal);
+        returned = returned & (dot3(mirror.direction, surface.normal) > 0.0f);
+        mirror.origin = surface_origin(&surface, mirror.direction);
+        mirror.throughput = reflected;
+        mirrored = returned & !deep;
+        trees->limited = trees->limited | (returned & deep);
       }
-      vec3 passed = mul3(now.throughput, deltas.transmitted);
+      vec3 passed = mul3(now->throughput, deltas.transmitted);
       size = make_vec3(fabs(passed.x), fabs(passed.y), fabs(passed.z));
       mask clear = scatters & (max_of3(size) > cutoff);
       if (ANY(clear)) {
         mask null_event = clear & !bsdf.solid;  // smooth thin transmission: the same ray goes on, at no depth
-        vec3 bent = normalize3(to_world(&surface.shading, deltas.wi_transmitted));
+        vec3 bent = select3(deltas.straight, now->direction, refract_about(wo, normal, lobes.inverse_eta, wo_local.z, deltas.cosine_far));
         clear = clear & (null_event | (dot3(bent, surface.normal) < 0.0f));
         mask enters = clear & bsdf.solid;
         onward.throughput = select3(clear, passed, onward.throughput);
         onward.direction = select3(enters, bent, onward.direction);
         onward.origin = select3(enters, surface_origin(&surface, bent), onward.origin);
-        onward.depth = enters ? now.depth + one : onward.depth;
+        onward.depth = enters ? now->depth + one : onward.depth;
         if (SUN_PASSABLE) straight = straight | null_event;
-        through = through | (enters & !deep);
-        limited = limited | (enters & deep);
+        through = enters & !deep;
+        trees->limited = trees->limited | (enters & deep);
       }
     }
-    vec3 worth = mul3(now.throughput, radiance);
-    mask shines = active & (max_of3(radiance) > 0.0f);
-    if (film && ANY(shines)) film_contribute_lanes(frame, film, shines, &path, now.depth, worth);
-    seen = select3(shines, add3(seen, worth), seen);
-    path.vertex = path.vertex + one;
+  }
+  mask shining = present & ((surface.material_flags & (uint_n)(SUN_MATERIAL_EMISSIVE)) != (uint_n)(0));
+  if (ANY(shining)) see(frame, film, path, trees, shining, surface_emission(scene, &surface, shining));
+  if (!ANY(straight | through | mirrored)) return;
 
-    // Straight on: the same ray, strictly behind this hit.
-    mirror.depth = now.depth + one;
+  // Straight on: the same ray, strictly behind this hit.
+  mirror.depth = now->depth + one;
+  if (SUN_PASSABLE) {
+    onward.passed_t = straight ? hit->t : (real)(0.0f);
+    onward.passed_instance = straight ? hit->instance : none;
+    onward.passed_primitive = straight ? hit->primitive : none;
+    mirror.passed_t = (real)(0.0f);
+    mirror.passed_instance = mirror.passed_primitive = none;
+  }
+  mask goes = through | straight;
+  Branch later = select_branch(straight, &onward, &mirror);
+  put_aside(waiting, trees, goes & mirrored, &later);
+  onward = select_branch(mirrored & (straight | !goes), &mirror, &onward);
+  *now = select_branch(goes | mirrored, &onward, now);
+  trees->on = trees->on | goes | mirrored;
+}
+
+// What LANES samples see. `film` may be 0: then what they see is the result alone.
+SUN_INLINE vec3 walk_trees(const Scene *scene, const TraceScene *tree, const FilmView *film, const PathNumber *place, const SamplerKey *key,
+                           const CameraRay *camera, mask active, uint *rays_traced) {
+  const SUN_GLOBAL Frame *frame = scene->frame;
+  const uint_n none = (uint_n)(SUN_NONE), zero = (uint_n)(0);
+  const mask nowhere = (mask)(0);
+  Path path;
+  path.pixel = place->y * (uint_n)(frame->tile_width) + place->x;
+  path.sample = place->sample;
+  path.vertex = zero;
+  Branch waiting[SUN_WHITTED_DEPTH];
+  Trees trees;
+  trees.now.origin = camera->origin;
+  trees.now.direction = camera->direction;
+  trees.now.throughput = splat3(camera->weight);
+  trees.now.depth = zero;
+  trees.now.passed_t = (real)(0.0f);
+  trees.now.passed_instance = trees.now.passed_primitive = none;
+  trees.seen = splat3((real)(0.0f));
+  trees.level = zero;
+  trees.top = 0;
+  trees.limited = nowhere;
+  uint_n deepest = zero;
+  mask escaped = nowhere, layered = nowhere;
+  while (ANY(active)) {
+    Rays rays = fresh_rays(trees.now.origin, trees.now.direction, (real)(SUN_INFINITY), scene->moment.time);
     if (SUN_PASSABLE) {
-      onward.passed_t = straight ? hit.t : (real)(0.0f);
-      onward.passed_instance = straight ? hit.instance : none;
-      onward.passed_primitive = straight ? hit.primitive : none;
-      mirror.passed_t = (real)(0.0f);
-      mirror.passed_instance = mirror.passed_primitive = none;
+      rays.passed_t = trees.now.passed_t;
+      rays.passed_instance = trees.now.passed_instance;
+      rays.passed_primitive = trees.now.passed_primitive;
     }
-    mask goes = through | straight, waits = goes & mirrored;
-    if (ANY(waits)) {
-      Branch later = select_branch(straight, &onward, &mirror);
-      for (uint k = 0; k < top; k++) {
-        mask here = waits & (level == (uint_n)(k));
-        if (ANY(here)) waiting[k] = select_branch(here, &later, &waiting[k]);
-      }
-      level = waits ? level + one : level;
-      mask raised = level > (uint_n)(top);
-      if (ANY(raised)) waiting[top++] = later;
+    HitLanes hit = closest_lanes(frame, tree, &rays, active, SUN_WANT_ALL);
+    if (film) rays_traced[0] += count_lanes(active);
+    mask missed = active & !hit.hit;
+    if (ANY(missed)) {
+      mask first = trees.now.depth == zero;
+      mask shown = (frame->flags & SUN_FRAME_TRANSPARENT) ? missed & !first : missed;
+      see(frame, film, &path, &trees, shown, environment_radiance(&frame->environment, scene->environment_texels, trees.now.direction));
+      escaped = escaped | (missed & first);
     }
-    mask follows_mirror = mirrored & (straight | !goes);
-    mask takes = active & !goes & !mirrored & (level != (uint_n)(0));
-    now = select_branch(follows_mirror, &mirror, &onward);
-    if (ANY(takes)) {
-      for (uint k = 0; k < top; k++) {
-        mask here = takes & (level == (uint_n)(k + 1));
-        if (ANY(here)) now = select_branch(here, &waiting[k], &now);
-      }
-      level = takes ? level - one : level;
-      for (mask still = level >= (uint_n)(top); top > 0 && !ANY(still); still = level >= (uint_n)(top)) top--;
+    if (film && layers_wanted(frame)) {
+      HitLanes first = hit;
+      first.hit = hit.hit & (trees.now.depth == zero) & !layered;
+      if (ANY(first.hit)) layered = layered | first_hit_layers(scene, film, &path, &first, negate3(trees.now.direction), camera->weight);
     }
-    active = active & (goes | mirrored | takes);
-    deepest = (active & (now.depth > deepest)) ? now.depth : deepest;
+    trees.on = nowhere;
+    for (mask left = hit.hit; ANY(left);) {
+      Group group = take_group(scene, tree, &hit, &left);
+      if (SUN_FEW_SHAPES && group.kind == SUN_GROUP_MATT)
+        shade_group(scene, tree, film, &path, key, &group, 1, SUN_GROUP_MATT, waiting, &trees, rays_traced);
+      else if (SUN_FEW_SHAPES && SUN_SPECULAR && group.kind == SUN_GROUP_CLEAR)
+        shade_group(scene, tree, film, &path, key, &group, 1, SUN_GROUP_CLEAR, waiting, &trees, rays_traced);
+      else if (SUN_FEW_SHAPES && SUN_SPECULAR && group.kind == SUN_GROUP_GLOSS)
+        shade_group(scene, tree, film, &path, key, &group, 1, SUN_GROUP_GLOSS, waiting, &trees, rays_traced);
+      else
+        shade_group(scene, tree, film, &path, key, &group, group.alike, SUN_GROUP_ANY, waiting, &trees, rays_traced);
+    }
+    path.vertex = path.vertex + (uint_n)(1);
+    mask takes = active & !trees.on & (trees.level != zero);
+    take_up(waiting, &trees, takes);
+    active = active & (trees.on | takes);
+    deepest = (active & (trees.now.depth > deepest)) ? trees.now.depth : deepest;
   }
   if (film) {
     uint inside[LANES], reason[LANES], depth[LANES];
     uint_n flags = place->inside ? (uint_n)(1) : (uint_n)(0);
-    uint_n why = limited ? (uint_n)(SUN_ENDED_DEPTH) : escaped ? (uint_n)(SUN_ENDED_ESCAPED) : (uint_n)(SUN_ENDED_ABSORBED);
+    uint_n why = trees.limited ? (uint_n)(SUN_ENDED_DEPTH) : escaped ? (uint_n)(SUN_ENDED_ESCAPED) : (uint_n)(SUN_ENDED_ABSORBED);
     LANES_STORE(flags, inside);
     LANES_STORE(why, reason);
     LANES_STORE(deepest, depth);
@@ -270,7 +341,7 @@ SUN_INLINE vec3 walk_trees(const Scene *opened, const TraceScene *tree, const Fi
       rays_traced[2]++;
     }
   }
-  return seen;
+  return trees.seen;
 }
 
 SUN_BODY void whitted_bundle(const SUN_GLOBAL Frame *frame, TREE_PARAMETERS, SCENE_PARAMETERS, FilmCounts counts, FilmWords film_words, uint first) {

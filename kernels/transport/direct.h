@@ -193,8 +193,11 @@ SUN_FN void direct_ray(const Surface *s, const EmitterSample *sample, DirectSamp
   direct->t_max = sample->has_target ? (real)(1.0f) : (real)(SUN_FAR);
 }
 
-// The shadow ray of a sample, where `valid`. A light is a delta: no ray finds it by chance, so it keeps its whole weight.
-SUN_FN DirectSample direct_of(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, const EmitterSample *sample, mask valid) {
+// Is light that is found by chance weighted against shadow rays?
+SUN_FN int weighted_by_chance(const Scene *scene) { return (scene->frame->flags & SUN_FRAME_WEIGHTED) != 0; }
+
+// The shadow ray of a sample, where `valid`; `weighted`: against what the bsdf finds. A light is a delta: no ray finds it by chance, so it keeps its whole weight.
+SUN_FN DirectSample direct_of(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, const EmitterSample *sample, int weighted, mask valid) {
   DirectSample direct;
   direct.contribution = splat3((real)(0.0f));
   if (ANY(valid)) {
@@ -204,7 +207,7 @@ SUN_FN DirectSample direct_of(const Scene *scene, const Surface *s, const Lobes 
     mask same_side = (dot3(sample->direction, s->normal) > 0.0f) == (wi_local.z > 0.0f);
     valid = valid & same_side & (max_of3(eval.f_cos) > 0.0f);
     real weight = (real)(1.0f);
-    if (scene->frame->flags & SUN_FRAME_WEIGHTED) weight = sample->is_light ? weight : power_heuristic(sample->pdf, eval.pdf);
+    if (weighted) weight = sample->is_light ? weight : power_heuristic(sample->pdf, eval.pdf);
     real scale = valid ? weight / (valid ? sample->pdf : (real)(1.0f)) : (real)(0.0f);
     direct.contribution = select3(valid, scale3(mul3(eval.f_cos, sample->emission), scale), direct.contribution);
   }
@@ -225,13 +228,13 @@ SUN_FN DirectSample direct_from_light(const Scene *scene, const Surface *s, cons
   sample.pdf = (real)(1.0f);
   sample.spread = (real)(0.0f);
   sample.is_light = active;
-  return direct_of(scene, s, lobes, wo_local, &sample, active & (max_of3(of_light.radiance) > 0.0f));
+  return direct_of(scene, s, lobes, wo_local, &sample, 0, active & (max_of3(of_light.radiance) > 0.0f));
 }
 
 // A shadow ray for LANES surfaces. `throughput` is not in it.
 SUN_FN DirectSample sample_direct(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, real u_choice, vec2 u_point, mask active) {
   EmitterSample sample = sample_emitter(scene, s, u_choice, u_point, active);
-  return direct_of(scene, s, lobes, wo_local, &sample, active & (sample.pdf > 0.0f) & (max_of3(sample.emission) > 0.0f));
+  return direct_of(scene, s, lobes, wo_local, &sample, weighted_by_chance(scene), active & (sample.pdf > 0.0f) & (max_of3(sample.emission) > 0.0f));
 }
 
 SUN_NAMESPACE_END

@@ -43,11 +43,11 @@ SUN_FN DirectSample sample_direct_parts(const Scene *scene, const Surface *s, co
   EmitterSample sample = sample_emitter(scene, s, u_choice, u_point, active);
   mask valid = active & (sample.pdf > 0.0f) & (max_of3(sample.emission) > 0.0f);
   Lobes part = gathering_lobes(scene->frame, lobes);
-  DirectSample direct = direct_of(scene, s, &part, wo_local, &sample, valid);
+  DirectSample direct = direct_of(scene, s, &part, wo_local, &sample, weighted_by_chance(scene), valid);
   mask sharp = valid & sharp_facets(scene->frame, lobes) & !lobes->delta_reflection;
   if (ANY(sharp)) {
     part = lobes_part(lobes, sharp, sharp & !sharp);
-    DirectSample more = direct_of(scene, s, &part, wo_local, &sample, sharp);
+    DirectSample more = direct_of(scene, s, &part, wo_local, &sample, weighted_by_chance(scene), sharp);
     direct.contribution = select3(more.valid, add3(direct.contribution, more.contribution), direct.contribution);
     direct.valid = direct.valid | more.valid;
   }
