@@ -106,14 +106,14 @@ SUN_FN LightLanes load_light(const SUN_GLOBAL Light *lights, uint light) {
 
 // Share of a spot's intensity that leaves under this cosine to its axis: the ramp between the cosines of its angles, squared; a ramp narrower than 0.001
 // counts as that. 1 for other lights.
-SUN_FN real spot_share(const LightLanes *l, real cosine) {
+SUN_INLINE real spot_share(const LightLanes *l, real cosine) {
   if (!ANY(l->kind == (uint_n)(SUN_LIGHT_SPOT))) return (real)(1.0f);
   real ramp = (cosine - l->cos_outer) / max_real(l->cos_inner - l->cos_outer, (real)(0.001f));
   ramp = clamp_real(ramp, (real)(0.0f), (real)(1.0f));
   return l->kind == (uint_n)(SUN_LIGHT_SPOT) ? ramp * ramp : (real)(1.0f);
 }
 
-SUN_FN LightSample sample_of_light(const LightLanes *lanes, vec3 position) {
+SUN_INLINE LightSample sample_of_light(const LightLanes *lanes, vec3 position) {
   LightLanes l = *lanes;
   mask placed = l.kind != (uint_n)(SUN_LIGHT_DIRECTIONAL);
   vec3 to = sub3(l.place, position);

@@ -93,7 +93,7 @@ SUN_FN Group take_group(const Scene *scene, const TraceScene *tree, const HitLan
   group.kind = SUN_GROUP_ANY;
   if (SUN_FEW_SHAPES) {
     const uint first_shape = scene->frame->first_shape, number = least_lane(*left ? hit->instance : (uint_n)(SUN_NONE));
-    group.alike = number >= first_shape;
+    group.alike = !SUN_TRIANGLES || number >= first_shape;
     const mask same = group.alike ? hit->instance == (uint_n)(number) : hit->instance < (uint_n)(first_shape);
     group.hit.hit = *left & same;
     if (group.alike) {
@@ -319,7 +319,7 @@ SUN_INLINE vec3 walk_trees(const Scene *scene, const TraceScene *tree, const Fil
       else if (SUN_FEW_SHAPES && SUN_SPECULAR && group.kind == SUN_GROUP_GLOSS)
         shade_group(scene, tree, film, &path, key, &group, 1, SUN_GROUP_GLOSS, waiting, &trees, rays_traced);
       else
-        shade_group(scene, tree, film, &path, key, &group, group.alike, SUN_GROUP_ANY, waiting, &trees, rays_traced);
+        shade_group(scene, tree, film, &path, key, &group, SUN_TRIANGLES ? group.alike : SUN_FEW_SHAPES, SUN_GROUP_ANY, waiting, &trees, rays_traced);
     }
     path.vertex = path.vertex + (uint_n)(1);
     mask takes = active & !trees.on & (trees.level != zero);

@@ -219,7 +219,13 @@ SUN_FN DirectSample direct_of(const Scene *scene, const Surface *s, const Lobes 
 // A ray to one punctual light, wherever it is seen from: its pdf is 1.
 SUN_FN DirectSample direct_from_light(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, uint light, mask active) {
   LightLanes lanes = SUN_MOTION ? lights_at(scene, (uint_n)(light)) : load_light(scene->lights, light);
-  LightSample of_light = sample_of_light(&lanes, s->position);
+  LightSample of_light;
+  if ((scene->lights[light].kind & SUN_LIGHT_KIND) == SUN_LIGHT_POINT) {  // the same numbers, without what the others need
+    lanes.kind = (uint_n)(SUN_LIGHT_POINT);
+    of_light = sample_of_light(&lanes, s->position);
+  } else {
+    of_light = sample_of_light(&lanes, s->position);
+  }
   EmitterSample sample;
   sample.emission = of_light.radiance;
   sample.has_target = of_light.distance < SUN_FAR;
