@@ -22,15 +22,15 @@ namespace {
 struct Expected {
   const char *integrator, *film_hash;
 };
-constexpr Expected expected[] = {{"path", "a8ee87ddcdd458350ad1642736044e05"},
-                                 {"pure", "940091d3d7f7b708d8fcb2c10c366793"},
-                                 {"hybrid", "e2cf20450aca91ce8412c296d2f930b1"},
-                                 {"distribution", "aeb70a1353f8e1fbba98b258a8716779"},
-                                 {"whitted", "66c4a3ebaecc11efe3080125fd62ea69"},
-                                 {"bdpt", "2e9272f8fdef287e5a2cf366e2010a5b"},
-                                 {"sppm", "d377f0227202210312757a06055e1d82"},
-                                 {"photon", "e25f3ed8dd8298601023be03714ded82"},
-                                 {"vcm", "74f893d1815cb389e08a740517609501"}};
+constexpr Expected expected[] = {{"path", "eeb9f9bffc7e67b9a9596fd24f76dc61"},
+                                 {"pure", "a4e5eb08301ef63472eb83ac6749d307"},
+                                 {"hybrid", "c00da142d373dbb3d9d75bf4b016ecbb"},
+                                 {"distribution", "37b4d9e12fd0ea2d0bf74f09f2bb3b25"},
+                                 {"whitted", "6aea15a8f6688cb835ff3a97f1a87f98"},
+                                 {"bdpt", "c6f09311e4994fc2eabd2e720b96ff2e"},
+                                 {"sppm", "11ceb110779362f6a0a115bd40ba7fde"},
+                                 {"photon", "27fbd93adc9e9811f02d9614d95340d2"},
+                                 {"vcm", "2d1bdbb9e88ff6a7bc3d6bc049978ca9"}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
