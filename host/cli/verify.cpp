@@ -22,15 +22,15 @@ namespace {
 struct Expected {
   const char *integrator, *film_hash;
 };
-constexpr Expected expected[] = {{"path", "eeb9f9bffc7e67b9a9596fd24f76dc61"},
-                                 {"pure", "a4e5eb08301ef63472eb83ac6749d307"},
-                                 {"hybrid", "c00da142d373dbb3d9d75bf4b016ecbb"},
-                                 {"distribution", "37b4d9e12fd0ea2d0bf74f09f2bb3b25"},
-                                 {"whitted", "6aea15a8f6688cb835ff3a97f1a87f98"},
-                                 {"bdpt", "c6f09311e4994fc2eabd2e720b96ff2e"},
-                                 {"sppm", "11ceb110779362f6a0a115bd40ba7fde"},
-                                 {"photon", "27fbd93adc9e9811f02d9614d95340d2"},
-                                 {"vcm", "2d1bdbb9e88ff6a7bc3d6bc049978ca9"}};
+constexpr Expected expected[] = {{"path", "fde23fd9c9a6d6faee8566fa5c158c67"},
+                                 {"pure", "3b658440b4f7897397804b2ff7fd1ac8"},
+                                 {"hybrid", "72251da841739d3e1bd54f0be1122530"},
+                                 {"distribution", "fdc18a93b42d0a165edb779d587e297a"},
+                                 {"whitted", "cc0e053e0b23a1e51092dc7340a8bb8b"},
+                                 {"bdpt", "e694f7c8e41d271b1273c1c97f55a94e"},
+                                 {"sppm", "c5fbc587850b4d656d9b3e7b3afabddc"},
+                                 {"photon", "b6ccce5c7ef467ecdb1352f830b60ee2"},
+                                 {"vcm", "13280e305d5c4c1fb43f20941b17ae70"}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 

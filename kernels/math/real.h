@@ -23,8 +23,9 @@
 #if LANES == 16 && defined(__AVX512DQ__) && __has_builtin(__builtin_ia32_cvtd2mask512)
 #undef SUN_ANY
 #undef SUN_ALL
-#define SUN_ANY(m) (__builtin_ia32_cvtd2mask512(m) != 0)
-#define SUN_ALL(m) ((ushort)__builtin_ia32_cvtd2mask512(m) == 0xffffu)
+#define SUN_MASK_BITS(m) ((uint)(ushort)__builtin_ia32_cvtd2mask512(m))
+#define SUN_ANY(m) (SUN_MASK_BITS(m) != 0u)
+#define SUN_ALL(m) (SUN_MASK_BITS(m) == 0xffffu)
 #elif __has_builtin(__builtin_reduce_or)
 #undef SUN_ANY
 #undef SUN_ALL
@@ -156,6 +157,17 @@ SUN_FN uint least_lane(uint_n v) {
   const uint2 two = min(quarters.lo, quarters.hi);
   return min(two.x, two.y);
 }
+#endif
+
+// Any one of the lanes that are on, of which there is one; which, only speed may depend on.
+#if LANES == 16 && defined(SUN_MASK_BITS)
+SUN_FN uint some_lane(mask on, uint_n v) {
+  uint at[LANES];
+  LANES_STORE(v, at);
+  return at[31u - clz(SUN_MASK_BITS(on))];
+}
+#else
+SUN_FN uint some_lane(mask on, uint_n v) { return least_lane(on ? v : (uint_n)(0xffffffffu)); }
 #endif
 
 SUN_NAMESPACE_END

@@ -70,7 +70,7 @@ SUN_FN real filter_offset(const SUN_GLOBAL float *tables, real u) {
 SUN_FN CameraRay camera_ray_at(const SUN_GLOBAL Frame *frame, const SamplerKey *key, real x, real y) {
   CameraRay ray;
   ray.weight = (real)(1.0f);
-  real sx = 2.0f * x / (float)frame->width - 1.0f, sy = 1.0f - 2.0f * y / (float)frame->height;
+  real sx = x * (2.0f / (float)frame->width) - 1.0f, sy = 1.0f - y * (2.0f / (float)frame->height);
   const SUN_GLOBAL Camera *camera = &frame->camera;
   Moment moment = sample_moment(frame, key);
   CameraLanes at = camera_at(frame, &moment);

@@ -21,13 +21,15 @@ SUN_INLINE vec2 encode_octahedron(vec3 d) {
 // The distances at which rays that are on meet a sphere, the nearer first: false where they pass by. Neither root cancels, and the discriminant is found from
 // the point of the ray that is nearest to the centre, so spheres far away keep their outline [Haines19].
 SUN_INLINE mask meet_sphere(vec3 origin, vec3 direction, mask on, real *near, real *far) {
-  const real a = dot3(direction, direction), b = -dot3(origin, direction);
+  *near = *far = (real)(0.0f);
+  const real a = dot3(direction, direction), b = -dot3(origin, direction), c = dot3(origin, origin) - 1.0f;
+  // From outside and away: both are behind. By more than rounding can be wrong about (2^-20 of b^2), the line passes by: mostly that is all.
+  const mask may = on & ((b > 0.0f) | (c < 0.0f)) & (b * b - a * c >= -9.53674316e-7f * (b * b));
+  if (!ANY(may)) return may;
   const real inverse = 1.0f / a, middle = b * inverse;
   const real x = fma(middle, direction.x, origin.x), y = fma(middle, direction.y, origin.y), z = fma(middle, direction.z, origin.z);
   const real discriminant = 1.0f - (x * x + y * y + z * z);
-  const real c = dot3(origin, origin) - 1.0f;
-  const mask meets = on & (discriminant >= 0.0f) & ((b > 0.0f) | (c < 0.0f));  // from outside and away: both are behind
-  *near = *far = (real)(0.0f);
+  const mask meets = may & (discriminant >= 0.0f);
   if (!ANY(meets)) return meets;
   const real q = b + copysign(sqrt((meets ? discriminant : (real)(0.0f)) * a), b);
   const real one = q * inverse, other = q != 0.0f ? c / q : one;
@@ -76,7 +78,7 @@ SUN_INLINE vec3 place_along(vec3 origin, vec3 direction, real t) {
 
 // Is that surely a point of the box, though its coordinate was rounded? The slabs of such a box hold the point's distance, as they make up for more than that.
 SUN_INLINE mask surely_between(float lower, float upper, real place) {
-  const float a = fabs(lower), b = fabs(upper), margin = 2.38418579e-7f * SUN_GREATER(a, b);  // 2^-22; shape boxes are wider by 2^-19
+  const float margin = 2.38418579e-7f * (fabs(lower) + fabs(upper));  // 2^-22; shape boxes are wider by 2^-19
   return (place > lower + margin) & (place < upper - margin);
 }
 
@@ -142,9 +144,11 @@ SUN_INLINE ShapeHit meet_shape(const SUN_GLOBAL Instance *instance, uint primiti
     hit.counts = hit.counts | later.counts;
     return hit;
   }
+  hit.counts = on & ((origin.y < 0.0f) != (direction.y < 0.0f));  // ahead
+  if (!ANY(hit.counts)) return hit;
   const real met = -origin.y / direction.y;  // parallel to it: infinite, or NaN within it
   const vec3 place = place_along(origin, direction, met);
-  hit.counts = on & (met > 0.0f) & (met < rays->t_max);
+  hit.counts = hit.counts & (met > 0.0f) & (met < rays->t_max);
   const real x = fabs(place.x), z = fabs(place.z);
   if (flags & SUN_INSTANCE_DISK) {
     hit.counts = hit.counts & (x * x + z * z <= 1.0f);

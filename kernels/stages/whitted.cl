@@ -92,7 +92,7 @@ SUN_FN Group take_group(const Scene *scene, const TraceScene *tree, const HitLan
   group.alike = 0;
   group.kind = SUN_GROUP_ANY;
   if (SUN_FEW_SHAPES) {
-    const uint first_shape = scene->frame->first_shape, number = least_lane(*left ? hit->instance : (uint_n)(SUN_NONE));
+    const uint first_shape = scene->frame->first_shape, number = some_lane(*left, hit->instance);
     group.alike = !SUN_TRIANGLES || number >= first_shape;
     const mask same = group.alike ? hit->instance == (uint_n)(number) : hit->instance < (uint_n)(first_shape);
     group.hit.hit = *left & same;
@@ -187,7 +187,10 @@ SUN_INLINE void shade_group(const Scene *opened, const TraceScene *tree, const F
   mask through = nowhere, mirrored = nowhere;
   if (ANY(scatters)) {
     Bsdf bsdf = surface_bsdf(scene, &surface, scatters);
-    if (kind == SUN_GROUP_MATT) bsdf.specular = nowhere;
+    if (kind == SUN_GROUP_MATT) {
+      bsdf.specular = bsdf.solid = nowhere;
+      bsdf.metallic = bsdf.transmission = (real)(0.0f);
+    }
     if (kind == SUN_GROUP_CLEAR || kind == SUN_GROUP_GLOSS) {
       bsdf.specular = all;
       bsdf.solid = kind == SUN_GROUP_CLEAR ? all : nowhere;
