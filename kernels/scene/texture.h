@@ -7,6 +7,13 @@
 #include "shared/tables.h"
 #include "shared/texture.h"
 
+// Looked up in one function where lanes are sorted by shape, for speed; elsewhere as the compiler likes: textured kernels would take a third longer to compile.
+#if SUN_FEW_SHAPES
+#define SUN_TEXEL_FN SUN_INLINE
+#else
+#define SUN_TEXEL_FN SUN_FN
+#endif
+
 SUN_NAMESPACE_BEGIN
 
 typedef struct TexturePages {
@@ -34,7 +41,7 @@ SUN_FN const SUN_GLOBAL uint *page_of(const TexturePages *pages, uint page) {
   return page == 0u ? pages->page[0] : page == 1u ? pages->page[1] : page == 2u ? pages->page[2] : pages->page[3];
 }
 
-SUN_INLINE uint_n fetch_words(const TexturePages *pages, uint_n page, uint_n at) {
+SUN_TEXEL_FN uint_n fetch_words(const TexturePages *pages, uint_n page, uint_n at) {
   const uint first = FIRST_LANE(page);
   if (ALL(page == (uint_n)(first))) {
     const SUN_GLOBAL uint *words = page_of(pages, first);
@@ -69,7 +76,7 @@ typedef struct TextureLanes {
 } TextureLanes;
 
 // Texels, decoded. x and y are inside.
-SUN_INLINE Texel4 fetch_texels(const TexturePages *pages, const TextureLanes *texture, const SUN_GLOBAL float *tables, uint_n x, uint_n y) {
+SUN_TEXEL_FN Texel4 fetch_texels(const TexturePages *pages, const TextureLanes *texture, const SUN_GLOBAL float *tables, uint_n x, uint_n y) {
   const uint_n texel = y * texture->width + x, low_byte = (uint_n)(255u), low_half = (uint_n)(0xffffu);
   const mask full = texture->format == (uint_n)(SUN_TEXEL_RGBA32F), half_size = texture->format == (uint_n)(SUN_TEXEL_RGBA16F), bytes = !(full | half_size);
   Texel4 out;
@@ -135,7 +142,7 @@ SUN_FN real bilinear(real top_left, real top_right, real bottom_left, real botto
 }
 
 // `texture` has to be an index of `textures` in all lanes; `alike`: all are `first`. Lanes that are not wanted give 1.
-SUN_INLINE Texel4 sample_textures(const TexturePages *pages, const SUN_GLOBAL Texture *textures, const SUN_GLOBAL float *tables, uint_n texture, int alike,
+SUN_TEXEL_FN Texel4 sample_textures(const TexturePages *pages, const SUN_GLOBAL Texture *textures, const SUN_GLOBAL float *tables, uint_n texture, int alike,
                               uint first, real u, real v, mask wanted) {
   Quad place, look;
   RECORD_QUAD(place, alike, first, textures, texture, page);
