@@ -30,16 +30,13 @@ SUN_FN vec3 shape_place(uint_n flags, real u, real v) {
   return select3(is_shape(flags, SUN_INSTANCE_SPHERE), of_sphere, make_vec3(u, (real)(0.0f), v));
 }
 
-// The same of a place that was found in world space and is nearly one of the shape.
-SUN_FN vec3 shape_place_at(const Matrix *to_object, uint_n flags, vec3 position) {
-  const real *m = to_object->m;
-  vec3 place = make_vec3(m[0] * position.x + m[1] * position.y + m[2] * position.z + m[3], m[4] * position.x + m[5] * position.y + m[6] * position.z + m[7],
-                         m[8] * position.x + m[9] * position.y + m[10] * position.z + m[11]);
+// The same of a place that was found along a ray, and is nearly one of the shape.
+SUN_FN vec3 shape_place_near(uint_n flags, vec3 place) {
   return select3(is_shape(flags, SUN_INSTANCE_SPHERE), normalize3(place), make_vec3(place.x, (real)(0.0f), place.z));
 }
 
-// The same numbers for one shape with SUN_INSTANCE_ALIGNED: what its zeros add is left out.
-SUN_FN vec3 aligned_shape_place_at(const SUN_GLOBAL float *to_object, uint flags, vec3 position) {
+// The same numbers for one shape with SUN_INSTANCE_ALIGNED, from the place in world space: what its zeros add is left out.
+SUN_FN vec3 aligned_shape_place_near(const SUN_GLOBAL float *to_object, uint flags, vec3 position) {
   vec3 place = make_vec3(to_object[0] * position.x + to_object[3], to_object[5] * position.y + to_object[7], to_object[10] * position.z + to_object[11]);
   if (flags & SUN_INSTANCE_SPHERE) return normalize3(place);
   return make_vec3(place.x, (real)(0.0f), place.z);

@@ -190,9 +190,9 @@ SUN_INLINE vec3 place_of_meeting(const Scene *scene, uint_n instance, vec3 posit
   uint_n flags;
   SCENE_UINT(flags, scene, instances, instance, flags);
   if (LANES_ALIKE(scene) && (FIRST_LANE(flags) & SUN_INSTANCE_ALIGNED))
-    return aligned_shape_place_at(scene->instances[FIRST_LANE(instance)].to_object, FIRST_LANE(flags), position);
+    return aligned_shape_place_near(scene->instances[FIRST_LANE(instance)].to_object, FIRST_LANE(flags), position);
   Matrix to_object = instance_to_object(scene, instance, flags);
-  return shape_place_at(&to_object, flags, position);
+  return shape_place_near(flags, transform_point(&to_object, position));
 }
 
 // wo: unit vector back along the ray. `place`: on the shape that is hit, in its space; where it is 0 the hit's u and v tell.
