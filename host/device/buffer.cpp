@@ -31,7 +31,7 @@ static cl::Buffer make_buffer(const Device::State &owner, std::size_t bytes) {
 }
 
 RawBuffer::State::~State() {
-  if (device) device.state().allocated -= bytes;
+  if (device) *device.state().allocated -= bytes;
 }
 
 RawBuffer::RawBuffer(const Device &device, std::size_t bytes, std::string what) : bytes_(bytes) {
@@ -39,19 +39,24 @@ RawBuffer::RawBuffer(const Device &device, std::size_t bytes, std::string what) 
   const std::string place = owner.info.name + ": " + what;
   if (bytes > owner.info.max_allocation)
     throw Error(place, "needs " + mebibytes(bytes) + " in one piece; the device allows " + mebibytes(owner.info.max_allocation));
-  if (owner.allocated + bytes > owner.info.memory)
-    throw Error(place, "needs " + mebibytes(bytes) + ", but " + mebibytes(owner.allocated) + " of the device's " + mebibytes(owner.info.memory) + " are in use");
+  if (*owner.allocated + bytes > owner.info.memory)
+    throw Error(place, "needs " + mebibytes(bytes) + ", but " + mebibytes(*owner.allocated) + " of the device's " + mebibytes(owner.info.memory) + " are in use");
   state_ = std::make_shared<State>();
   state_->what = std::move(what);
   state_->buffer = guarded(place, [&] { return make_buffer(owner, bytes); });
   state_->device = device;
   state_->bytes = bytes;
-  owner.allocated += bytes;
+  *owner.allocated += bytes;
 }
 
 void RawBuffer::write(const void *data, std::size_t bytes, std::size_t offset) const {
   if (offset > bytes_ || bytes > bytes_ - offset) throw Error(state_->what, "write beyond the end of a device buffer");
   guarded(state_->what, [&] { return state_->device.state().queue.enqueueWriteBuffer(state_->buffer, CL_TRUE, offset, bytes, data); });
+}
+
+void RawBuffer::write_later(const void *data, std::size_t bytes) const {
+  if (bytes > bytes_) throw Error(state_->what, "write beyond the end of a device buffer");
+  guarded(state_->what, [&] { return state_->device.state().queue.enqueueWriteBuffer(state_->buffer, CL_FALSE, 0, bytes, data); });
 }
 
 void RawBuffer::read(void *data, std::size_t bytes, std::size_t offset) const {

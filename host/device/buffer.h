@@ -18,6 +18,7 @@ class RawBuffer {
   RawBuffer() = default;
   RawBuffer(const Device &device, std::size_t bytes, std::string what);
   void write(const void *data, std::size_t bytes, std::size_t offset = 0) const;  // blocking
+  void write_later(const void *data, std::size_t bytes) const;                    // enqueued: `data` has to stay as it is until the queue has done it
   void read(void *data, std::size_t bytes, std::size_t offset = 0) const;         // blocking
   void fill_zero() const;                                                         // enqueued
   std::size_t bytes() const { return bytes_; }

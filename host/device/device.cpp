@@ -199,7 +199,20 @@ Device::Device(const DeviceInfo &info, const DeviceOptions &options) : state_(st
 
 const DeviceInfo &Device::info() const { return state_->info; }
 const DeviceOptions &Device::options() const { return state_->options; }
-std::size_t Device::allocated() const { return state_->allocated; }
+std::size_t Device::allocated() const { return *state_->allocated; }
+
+Device Device::beside() const {
+  Device other;
+  other.state_ = std::make_shared<State>();
+  other.state_->info = state_->info;
+  other.state_->options = state_->options;
+  other.state_->device = state_->device;
+  other.state_->context = state_->context;
+  other.state_->allocated = state_->allocated;
+  guarded(state_->info.name, [&] { other.state_->queue = cl::CommandQueue(state_->context, state_->device, state_->options.profile ? CL_QUEUE_PROFILING_ENABLE : 0); });
+  return other;
+}
+
 void Device::flush() const {
   guarded(state_->info.name, [&] { return state_->queue.flush(); });
 }

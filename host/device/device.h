@@ -45,7 +45,7 @@ struct DeviceOptions {
   std::size_t work_group = 0; // local size of every launch; 0: the default
 };
 
-// An opened device: context, in-order profiling queue, and the bytes that were allocated on it. Copies share it.
+// An opened device: context, in-order profiling queue, and the bytes that were allocated on it. Copies share all of it.
 class Device {
  public:
   Device() = default;
@@ -53,6 +53,8 @@ class Device {
   const DeviceInfo &info() const;
   const DeviceOptions &options() const;
   std::size_t allocated() const;
+  // The same device with another queue, and times of its own: what is enqueued there and here may run at once.
+  Device beside() const;
   void flush() const;
   void finish() const;
   // Device seconds by kernel since the last call; waits for what is running.

@@ -13,7 +13,9 @@ static std::size_t local_size(const DeviceInfo &info, const DeviceOptions &optio
   return std::min(local, info.max_work_group ? info.max_work_group : 1);
 }
 
-Kernel::Kernel(const Program &program, const std::string &name) : state_(std::make_shared<State>(State{program.state().device, program, {}, name, {}, 0})) {
+Kernel::Kernel(const Program &program, const std::string &name) : Kernel(program, name, program.state().device) {}
+
+Kernel::Kernel(const Program &program, const std::string &name, const Device &queue) : state_(std::make_shared<State>(State{queue, program, {}, name, {}, 0})) {
   guarded(program.state().name + ": kernel " + name, [&] { state_->kernel = cl::Kernel(program.state().program, name.c_str()); });
   Device::State &device = state_->device.state();
   std::size_t local = local_size(device.info, device.options, name);

@@ -14,6 +14,8 @@ class Kernel {
  public:
   Kernel() = default;
   Kernel(const Program &program, const std::string &name);
+  // In a queue of its device that is not the program's own (Device::beside).
+  Kernel(const Program &program, const std::string &name, const Device &queue);
   const std::string &name() const;
 
   // Arguments in order: buffers, or plain values of exactly the kernel's type.

@@ -8,6 +8,7 @@
 #include <CL/opencl.hpp>
 #include <atomic>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -26,7 +27,7 @@ struct Device::State {
   cl::Device device;
   cl::Context context;
   cl::CommandQueue queue;
-  std::atomic<std::size_t> allocated{0};
+  std::shared_ptr<std::atomic<std::size_t>> allocated = std::make_shared<std::atomic<std::size_t>>(0);  // by all its queues
   struct Launch {
     std::string kernel;
     std::size_t items;

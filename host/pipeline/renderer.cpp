@@ -63,8 +63,6 @@ struct Renderer::State {
   std::unique_ptr<Pool> pool;
   Buffer<kernel::Frame> device_frame;
   Buffer<std::int64_t> device_film;
-  Buffer<kernel::uint> pixels;  // of show
-  Kernel view;
   std::vector<Stage> walk;      // the plan's, without stages that nothing asks for here
   std::unique_ptr<LightPass> light;  // where the plan has one
 
@@ -374,28 +372,13 @@ std::size_t StageProbe::items(Stage stage) const {
   return counts[stage == Stage::generate ? SUN_COUNT_REFILL : SUN_COUNT_LIVE];
 }
 
-void Renderer::show(const kernel::Camera &camera, float scale) {
+Display Renderer::display() const {
   State &s = *state_;
   if (s.plan.walk != std::vector{Stage::whitted}) throw Error("integrator " + s.plan.name, "has no fused walk to show frames by");
   if (s.tiles.size() != 1) throw Error("frame", "does not fit the device in one piece");
-  if (s.pixels.size() == 0) {
-    s.pixels = Buffer<kernel::uint>(s.device, s.film.pixels(), "frame for a display");
-    s.view = Kernel(s.programs.whitted(), "whitted_view");
-  }
   s.place_tile(s.tiles[0]);
-  kernel::Frame frame = s.frame;
-  frame.camera = camera;
-  frame.flags &= ~SUN_FRAME_CAMERA_MOVES;
-  frame.sample_first = 0;
-  s.device_frame.upload(std::span(&frame, 1));
-  const DeviceScene &scene = s.scene;
-  s.view.run((frame.paths_per_sample + s.programs.variant.lanes - 1) / s.programs.variant.lanes, s.device_frame, scene.nodes, scene.leaves, scene.instance_list, scene.roots,
-             scene.top_root, scene.fragments, scene.vertices, scene.extras, scene.triangles, scene.instances, scene.records, scene.pages[0], scene.pages[1], scene.pages[2],
-             scene.pages[3], scale, s.pixels);
-  s.device.finish();
+  return Display(s.device, s.programs.whitted(), static_cast<unsigned>(s.programs.variant.lanes), s.frame, s.scene);
 }
-
-std::vector<kernel::uint> Renderer::shown() const { return state_->pixels.download(); }
 
 const Film &Renderer::film() const { return state_->film; }
 const RenderCounts &Renderer::counts() const { return state_->counters.sum; }

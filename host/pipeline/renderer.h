@@ -6,6 +6,7 @@
 
 #include "film/film.h"
 #include "pipeline/counts.h"
+#include "pipeline/display.h"
 #include "pipeline/plan.h"
 #include "pipeline/settings.h"
 #include "pipeline/stages.h"
@@ -60,10 +61,8 @@ class Renderer {
   // after the samples that have begun, all pixels alike. Returns what was done: [first, done).
   SampleRange render(SampleRange wanted, const std::function<bool(const RenderProgress &)> &progress);
 
-  // A frame for a display, from this camera, by an integrator that is one fused walk: a ray through the middle of each pixel, radiance times `scale`, the
-  // curve of sRGB. Returns when it is done; the film is left as it is.
-  void show(const kernel::Camera &camera, float scale);
-  std::vector<kernel::uint> shown() const;  // the last one: a word a pixel, red in its lowest byte
+  // Of the same scene and size; the film is left as it is. The renderer has to outlive it. Throws Error where the integrator is not one fused walk.
+  Display display() const;
 
   const Film &film() const;
   const RenderCounts &counts() const;

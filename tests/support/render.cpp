@@ -50,10 +50,10 @@ Variant variant_of(const Case &scene, const RenderSettings &settings, const Ways
   return v;
 }
 
-Renderer renderer_of(const Case &scene, const RenderSettings &settings, const Ways &ways) {
+Renderer renderer_of(const Case &scene, const RenderSettings &settings, const Ways &ways, const kernel::Camera *camera = nullptr) {
   const Variant variant = variant_of(scene, settings, ways);
   const FlatScene &flat = scene.flat(variant.layout);
-  return {test_device(ways.work_group), programs_for(variant, ways.work_group), flat, scene.camera(settings.width, settings.height), settings, Tuning{ways.pool, variant.lanes}};
+  return {test_device(ways.work_group), programs_for(variant, ways.work_group), flat, camera ? *camera : scene.camera(settings.width, settings.height), settings, Tuning{ways.pool, variant.lanes}};
 }
 
 }  // namespace
@@ -120,10 +120,18 @@ RenderSettings picture(int width, int height, unsigned max_depth) {
 
 Filter box_filter() { return {Filter::Kind::box, 0.5f}; }
 
-Rendered render(const Case &scene, const RenderSettings &settings, SampleRange samples, const Ways &ways, const std::function<bool(const RenderProgress &)> &progress) {
-  Renderer renderer = renderer_of(scene, settings, ways);
+Rendered render(const Case &scene, const RenderSettings &settings, SampleRange samples, const Ways &ways, const std::function<bool(const RenderProgress &)> &progress,
+                const kernel::Camera *camera) {
+  Renderer renderer = renderer_of(scene, settings, ways, camera);
   renderer.render(samples, progress);
   return {renderer.film(), renderer.counts()};
+}
+
+std::vector<kernel::uint> show(const Case &scene, const RenderSettings &settings, std::span<const kernel::Camera> cameras, float scale, const Ways &ways) {
+  const Renderer renderer = renderer_of(scene, settings, ways);
+  Display display = renderer.display();
+  for (const kernel::Camera &camera : cameras) display.show(camera, scale);
+  return display.shown();
 }
 
 std::array<std::vector<std::int64_t>, 2> render_twice(const Case &scene, const RenderSettings &settings, std::uint64_t sample) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,12 @@ struct Rendered {
 RenderSettings picture(int width, int height, unsigned max_depth);
 Filter box_filter();
 
+// From the scene's camera, or another.
 Rendered render(const Case &scene, const RenderSettings &settings, SampleRange samples, const Ways &ways = {},
-                const std::function<bool(const RenderProgress &)> &progress = {});
+                const std::function<bool(const RenderProgress &)> &progress = {}, const kernel::Camera *camera = nullptr);
+
+// The last of the frames for a display that these cameras give, begun one after the other.
+std::vector<kernel::uint> show(const Case &scene, const RenderSettings &settings, std::span<const kernel::Camera> cameras, float scale, const Ways &ways = {});
 
 // A sample, twice by one renderer and each time into a new film: the integers of both, layer by layer.
 std::array<std::vector<std::int64_t>, 2> render_twice(const Case &scene, const RenderSettings &settings, std::uint64_t sample);
