@@ -76,15 +76,15 @@ SUN_INLINE Quad quad_of_rows(const uint *rows) {
 #if LANES > 1
 // LANES rows of LANES words, in place. Each stage is a perfect shuffle, which turns the bits of (row, column) by one; log2(LANES) of them swap the two.
 SUN_INLINE void transpose(uint_n *v) {
-#pragma unroll
+SUN_UNROLL
   for (int stage = 1; stage < LANES; stage *= 2) {
     uint_n t[LANES];
-#pragma unroll
+SUN_UNROLL
     for (int i = 0; i < LANES / 2; i++) {
       t[2 * i] = INTERLEAVE_LOW(v[i], v[i + LANES / 2]);
       t[2 * i + 1] = INTERLEAVE_HIGH(v[i], v[i + LANES / 2]);
     }
-#pragma unroll
+SUN_UNROLL
     for (int i = 0; i < LANES; i++) v[i] = t[i];
   }
 }
@@ -98,7 +98,7 @@ SUN_INLINE void load_records(const SUN_GLOBAL uint *records, uint_n index, uint_
   uint at[LANES];
   LANES_STORE(index, at);
   for (int first = 0; first < 16; first += LANES) {
-#pragma unroll
+SUN_UNROLL
     for (int lane = 0; lane < LANES; lane++) words[first + lane] = LANES_LOAD(records + (size_t)at[lane] * 16 + first);
     transpose(words + first);
   }
@@ -116,7 +116,7 @@ SUN_INLINE void store_records(SUN_GLOBAL uint *records, uint_n index, mask on, u
   LANES_STORE(index, at);
   LANES_STORE(on, lane_on);
   for (int first = 0; first < 16; first += LANES) transpose(words + first);
-#pragma unroll
+SUN_UNROLL
   for (int lane = 0; lane < LANES; lane++)
     if (lane_on[lane])
       for (int first = 0; first < 16; first += LANES) {

@@ -36,6 +36,7 @@ SUN_FN Walk walk_load(const SUN_GLOBAL uint *walks, uint_n slots) {
 
 SUN_FN void walk_store(SUN_GLOBAL uint *walks, uint_n slots, mask active, const Walk *walk) {
   uint_n words[SUN_WALK_WORDS];
+  SUN_UNROLL
   for (int k = 0; k < SUN_WALK_WORDS; k++) words[k] = (uint_n)(0);
   words[SUN_WALK_dVCM] = bits_of_real(walk->dVCM);
   words[SUN_WALK_dVC] = bits_of_real(walk->dVC);

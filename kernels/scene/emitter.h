@@ -69,6 +69,7 @@ SUN_FN LightLanes load_lights(const SUN_GLOBAL Light *lights, uint_n light) {
   LANES_STORE(light, at);
   for (int lane = 0; lane < LANES; lane++) {
     const SUN_GLOBAL Light *l = lights + at[lane];
+    SUN_UNROLL
     for (int c = 0; c < 3; c++) {
       field[c][lane] = l->position[c];
       field[3 + c][lane] = l->direction[c];

@@ -17,6 +17,7 @@ SUN_INLINE void matrix_row(Matrix *matrix, int row, Quad quad) {
 // `flags`: of the instance.
 SUN_FN Matrix instance_to_world(const Scene *scene, uint_n instance, uint_n flags) {
   Matrix matrix;
+  SUN_UNROLL
   for (int row = 0; row < 3; row++) {
     Quad quad;
     SCENE_QUAD(quad, scene, instances, instance, to_world[4 * row]);
@@ -28,6 +29,7 @@ SUN_FN Matrix instance_to_world(const Scene *scene, uint_n instance, uint_n flag
     uint_n key = (flags >> (uint_n)(SUN_INSTANCE_MOTION_SHIFT)) * (uint_n)(scene->frame->motion_steps + 1u) + scene->moment.step;
     key = moving ? key : (uint_n)(0);
     Matrix before, after;
+    SUN_UNROLL
     for (int row = 0; row < 3; row++) {
       Quad quad;
       GATHER_QUAD(quad, keys, key, to_world[4 * row]);
@@ -35,6 +37,7 @@ SUN_FN Matrix instance_to_world(const Scene *scene, uint_n instance, uint_n flag
       GATHER_QUAD(quad, keys, key + (uint_n)(1), to_world[4 * row]);
       matrix_row(&after, row, quad);
     }
+    SUN_UNROLL
     for (int k = 0; k < 12; k++) matrix.m[k] = moving ? blend_real(before.m[k], after.m[k], scene->moment.blend) : matrix.m[k];
   }
   return matrix;
@@ -54,6 +57,7 @@ SUN_FN mask matrix_mirrors(const Matrix *matrix) {
 // The inverse; of an instance that moves its linear part alone, but for a positive factor.
 SUN_FN Matrix instance_to_object(const Scene *scene, uint_n instance, uint_n flags) {
   Matrix matrix;
+  SUN_UNROLL
   for (int row = 0; row < 3; row++) {
     Quad quad;
     SCENE_QUAD(quad, scene, instances, instance, to_object[4 * row]);
@@ -63,7 +67,9 @@ SUN_FN Matrix instance_to_object(const Scene *scene, uint_n instance, uint_n fla
   if (SUN_MOTION && ANY(moving)) {
     Matrix to_world = instance_to_world(scene, instance, flags);
     mask mirrored = matrix_mirrors(&to_world);
+    SUN_UNROLL
     for (int row = 0; row < 3; row++)
+      SUN_UNROLL
       for (int column = 0; column < 3; column++) {
         real cofactor = matrix_cofactor(&to_world, column, row);
         matrix.m[4 * row + column] = moving ? (mirrored ? -cofactor : cofactor) : matrix.m[4 * row + column];

@@ -90,6 +90,7 @@ SUN_INLINE int prepare_ray(PreparedRay *ray, const float *origin, const float *d
   int usable = largest > 0.0f;
   const real least = least_direction((real)(largest));
   const float reach_z = pick(reach[0], reach[1], reach[2], kz);
+  SUN_UNROLL
   for (int axis = 0; axis < 3; axis++) {
     const float o = origin[axis], d = direction[axis];
     usable = usable & (fabs(o) <= SUN_LARGEST) & (fabs(d) <= SUN_LARGEST);
@@ -158,6 +159,7 @@ SUN_INLINE void note_signs(LaneSlabs *slabs) {
 SUN_INLINE LaneSlabs slabs_of_ray(const PreparedRay *ray) {
   LaneSlabs slabs;
   Slab slab[3];
+  SUN_UNROLL
   for (int axis = 0; axis < 3; axis++) {
     slab[axis].reciprocal = (real)(ray->reciprocal[axis]);
     slab[axis].near_offset = (real)(ray->near_offset[axis]);
@@ -217,6 +219,7 @@ SUN_INLINE real direction_in_instance(const SUN_GLOBAL Instance *instance, int r
 SUN_INLINE void to_instance(const SUN_GLOBAL Instance *instance, const Ray *ray, float *origin, float *direction) {
   const vec3 from = make_vec3((real)(ray->origin[0]), (real)(ray->origin[1]), (real)(ray->origin[2]));
   const vec3 along = make_vec3((real)(ray->direction[0]), (real)(ray->direction[1]), (real)(ray->direction[2]));
+  SUN_UNROLL
   for (int row = 0; row < 3; row++) {
     origin[row] = FIRST_LANE(origin_in_instance(instance, row, from));
     direction[row] = FIRST_LANE(direction_in_instance(instance, row, along));
@@ -252,9 +255,12 @@ SUN_INLINE void to_moving_instance(const SUN_GLOBAL Motion *motion, uint flags, 
   const RayMoment moment = ray_moment(motion, ray->time);
   const SUN_GLOBAL InstanceKey *key = (const SUN_GLOBAL InstanceKey *)(motion + 1) + (size_t)(flags >> SUN_INSTANCE_MOTION_SHIFT) * (motion->steps + 1u) + moment.step;
   float m[12];
+  SUN_UNROLL
   for (int k = 0; k < 12; k++) m[k] = between_keys(key[0].to_world[k], key[1].to_world[k], moment.blend);
+  SUN_UNROLL
   for (int row = 0; row < 3; row++) {
     const int r1 = row == 2 ? 0 : row + 1, r2 = row == 0 ? 2 : row - 1;
+    SUN_UNROLL
     for (int column = 0; column < 3; column++) {
       const int c1 = column == 2 ? 0 : column + 1, c2 = column == 0 ? 2 : column - 1;
       linear[3 * column + row] = difference_of_products(m[4 * r1 + c1], m[4 * r2 + c2], m[4 * r1 + c2], m[4 * r2 + c1]);
@@ -262,7 +268,9 @@ SUN_INLINE void to_moving_instance(const SUN_GLOBAL Motion *motion, uint flags, 
   }
   const float determinant = fma(m[0], linear[0], fma(m[1], linear[3], m[2] * linear[6])), scale = 1.0f / determinant;
   const float x = ray->origin[0] - m[3], y = ray->origin[1] - m[7], z = ray->origin[2] - m[11];
+  SUN_UNROLL
   for (int row = 0; row < 3; row++) {
+    SUN_UNROLL
     for (int column = 0; column < 3; column++) linear[3 * row + column] *= scale;
     const float a = linear[3 * row], b = linear[3 * row + 1], c = linear[3 * row + 2];
     origin[row] = fma(a, x, fma(b, y, c * z));
@@ -277,7 +285,9 @@ SUN_INLINE void to_space(const SUN_GLOBAL Motion *motion, const SUN_GLOBAL Insta
     return;
   }
   to_instance(instance, ray, origin, direction);
+  SUN_UNROLL
   for (int row = 0; row < 3; row++)
+    SUN_UNROLL
     for (int column = 0; column < 3; column++) linear[3 * row + column] = instance->to_object[4 * row + column];
 }
 

@@ -76,9 +76,11 @@ SUN_INLINE Corners load_corners(const Scene *scene, uint_n instance, uint_n prim
   c.deforms = (c.flags & (uint_n)(SUN_INSTANCE_DEFORMING)) != (uint_n)(0);
   c.next = (uint_n)(0);
   if (ANY(c.deforms)) c.next = c.deforms ? (uint_n)(scene->motion->deforming) : (uint_n)(0);
+  SUN_UNROLL
   for (int k = 0; k < 3; k++) c.vertex[k] = c.vertex[k] + c.next * scene->moment.step;
 #endif
 #if SUN_TRIANGLES
+  SUN_UNROLL
   for (int k = 0; k < 3; k++) {
     Quad vertex;
     SCENE_QUAD(vertex, scene, vertices, c.vertex[k], position[0]);
@@ -94,6 +96,7 @@ SUN_INLINE Corners load_corners(const Scene *scene, uint_n instance, uint_n prim
   }
   if (ANY(c.moved)) {
     Matrix matrix = instance_to_world(scene, instance, c.flags);
+    SUN_UNROLL
     for (int k = 0; k < 3; k++) c.p[k] = select3(c.moved, transform_point(&matrix, c.p[k]), c.p[k]);
     if (SUN_MOTION) {
       mask moving = (c.flags & (uint_n)(SUN_INSTANCE_MOVING)) != (uint_n)(0);
@@ -102,6 +105,7 @@ SUN_INLINE Corners load_corners(const Scene *scene, uint_n instance, uint_n prim
     }
   }
 #else
+  SUN_UNROLL
   for (int k = 0; k < 3; k++) {
     c.p[k] = splat3((real)(0.0f));
     c.u[k] = (real)(0.0f);
@@ -142,6 +146,7 @@ SUN_FN real interpolate(real a, real b, real c, real u, real v) { return (1.0f -
 // (a few 2^-24 of the same), so scale and place of a scene do not matter [Waechter19].
 SUN_FN real surface_offset(const Corners *c) {
   real largest = (real)(0.0f);
+  SUN_UNROLL
   for (int k = 0; k < 3; k++) {
     largest = max_real(largest, fabs(c->p[k].x));
     largest = max_real(largest, fabs(c->p[k].y));
@@ -170,14 +175,19 @@ typedef struct Surface {
 SUN_FN void surface_coordinates(const Scene *scene, Surface *s, const Corners *c, real u, real v) {
   real corner[3];
   s->uv0[0] = interpolate(c->u[0], c->u[1], c->u[2], u, v);
+  SUN_UNROLL
   for (int k = 0; k < 3; k++) SCENE_FLOAT(corner[k], scene, vertices, c->vertex[k], v);
   s->uv0[1] = interpolate(corner[0], corner[1], corner[2], u, v);
   if (scene->frame->flags & SUN_FRAME_EXTRAS) {
+    SUN_UNROLL
     for (int i = 0; i < 2; i++) {
+      SUN_UNROLL
       for (int k = 0; k < 3; k++) SCENE_FLOAT(corner[k], scene, extras, c->vertex[k], uv1[i]);
       s->uv1[i] = interpolate(corner[0], corner[1], corner[2], u, v);
     }
+    SUN_UNROLL
     for (int i = 0; i < 4; i++) {
+      SUN_UNROLL
       for (int k = 0; k < 3; k++) SCENE_FLOAT(corner[k], scene, extras, c->vertex[k], color[i]);
       s->color[i] = interpolate(corner[0], corner[1], corner[2], u, v);
     }
@@ -232,6 +242,7 @@ SUN_INLINE Surface surface_at(const Scene *scene, const HitLanes *hit, const vec
 
 #if SUN_TRIANGLES
   vec3 vertex_normal[3];
+  SUN_UNROLL
   for (int k = 0; k < 3; k++) GATHER_CORNER(vertex_normal[k], scene, &c, k, vertices, normal[0]);
   vec3 ns = interpolate3(vertex_normal[0], vertex_normal[1], vertex_normal[2], hit->u, hit->v);
   if (ANY(c.moved)) {
@@ -250,17 +261,22 @@ SUN_INLINE Surface surface_at(const Scene *scene, const HitLanes *hit, const vec
 #endif
   ns = select3(s.front, ns, negate3(ns));
 
+  SUN_UNROLL
+
   for (int i = 0; i < 2; i++) s.uv0[i] = s.uv1[i] = (real)(0.0f);
+  SUN_UNROLL
   for (int i = 0; i < 4; i++) s.color[i] = (real)(1.0f);
 #if SUN_TEXTURES
 #if SUN_TRIANGLES
   surface_coordinates(scene, &s, &c, hit->u, hit->v);
 #endif
 #if SUN_SHAPES
+  SUN_UNROLL
   for (int i = 0; i < 2; i++) {
     s.uv0[i] = shape ? shape_uv[i] : s.uv0[i];
     s.uv1[i] = shape ? shape_uv[i] : s.uv1[i];
   }
+  SUN_UNROLL
   for (int i = 0; i < 4; i++) s.color[i] = shape ? (real)(1.0f) : s.color[i];
 #endif
 #if SUN_TRIANGLES
@@ -272,6 +288,7 @@ SUN_INLINE Surface surface_at(const Scene *scene, const HitLanes *hit, const vec
     if (ANY(mapped)) {
       vec3 corner_tangent[3];
       real handed;
+      SUN_UNROLL
       for (int k = 0; k < 3; k++) GATHER_CORNER(corner_tangent[k], scene, &c, k, extras, tangent[0]);
       SCENE_FLOAT(handed, scene, extras, c.vertex[0], tangent[3]);
       vec3 tangent = interpolate3(corner_tangent[0], corner_tangent[1], corner_tangent[2], hit->u, hit->v);
@@ -322,11 +339,12 @@ SUN_FN vec3 surface_origin(const Surface *s, vec3 direction) { return offset_ori
 
 #if SUN_TEXTURES
 SUN_FN Texel4 material_texel(const Scene *scene, const Surface *s, uint slot, mask wanted) {
+  const real uv0[2] = {s->uv0[0], s->uv0[1]}, uv1[2] = {s->uv1[0], s->uv1[1]};  // copies: given away, its own would keep all of the surface in memory
   if (LANES_ALIKE(scene))
-    return sample_slot_alike(&scene->pages, scene->textures, scene->texture_refs, scene->tables, scene->materials[FIRST_LANE(s->material)].slot[slot], s->uv0, s->uv1, wanted);
+    return sample_slot_alike(&scene->pages, scene->textures, scene->texture_refs, scene->tables, scene->materials[FIRST_LANE(s->material)].slot[slot], uv0, uv1, wanted);
   uint_n ref;
   SCENE_UINT(ref, scene, materials, s->material, slot[slot]);
-  return sample_slot(&scene->pages, scene->textures, scene->texture_refs, scene->tables, ref, s->uv0, s->uv1, wanted);
+  return sample_slot(&scene->pages, scene->textures, scene->texture_refs, scene->tables, ref, uv0, uv1, wanted);
 }
 #endif
 

@@ -58,6 +58,7 @@ SUN_INLINE Search begin_search(const Ray *ray, uint want) {
 SUN_INLINE int prepare_world_ray(PreparedRay *world, const TraceScene *scene, const Ray *ray) {
   float lower[3], upper[3], reach[3];
   if (scene->instance_count == 1) {
+    SUN_UNROLL
     for (int axis = 0; axis < 3; axis++) {
       lower[axis] = scene->instances[0].lower[axis];
       upper[axis] = scene->instances[0].upper[axis];
@@ -65,6 +66,7 @@ SUN_INLINE int prepare_world_ray(PreparedRay *world, const TraceScene *scene, co
   } else {
     top_bounds(scene, lower, upper);
   }
+  SUN_UNROLL
   for (int axis = 0; axis < 3; axis++) reach[axis] = FIRST_LANE(farther(lower[axis], upper[axis], (real)(ray->origin[axis])));
   return prepare_ray(world, ray->origin, ray->direction, reach);
 }
@@ -84,6 +86,7 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
   place->from = search->passed_t > place->world.near ? search->passed_t : 0.0f;
   if (!(place->world.near <= place->world.far)) return 0;
   float origin[3], direction[3], linear[9], reach[3], world_reach[3];
+  SUN_UNROLL
   for (int axis = 0; axis < 3; axis++) world_reach[axis] = FIRST_LANE(farther(instance->lower[axis], instance->upper[axis], (real)(ray->origin[axis])));
 #if SUN_DEFORMING
   if (instance->flags & SUN_INSTANCE_DEFORMING) {
@@ -92,6 +95,7 @@ SUN_INLINE int enter_instance(const TraceScene *scene, uint number, const Ray *r
   }
 #endif
   to_space(scene->motion, instance, ray, linear, origin, direction);
+  SUN_UNROLL
   for (int row = 0; row < 3; row++) {
     const float a = linear[3 * row], b = linear[3 * row + 1], c = linear[3 * row + 2];
     // The mesh lies within its instance's world box, but for the rounding of both matrices.

@@ -80,6 +80,7 @@ SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, f
 // The box around all instances, where there are several.
 SUN_INLINE void top_bounds(const TraceScene *scene, float *lower, float *upper) {
   const BinaryNode root = scene->nodes[scene->top_root];
+  SUN_UNROLL
   for (int axis = 0; axis < 3; axis++) {
     lower[axis] = root.lower[axis];
     upper[axis] = root.upper[axis];

@@ -206,6 +206,7 @@ SUN_INLINE uint next_instance(const TraceScene *scene, const PreparedRay *ray, f
 // The box around all instances, where there are several.
 SUN_INLINE void top_bounds(const TraceScene *scene, float *lower, float *upper) {
   const SUN_GLOBAL TraceNode *root = &scene->nodes[scene->top_root];
+  SUN_UNROLL
   for (int axis = 0; axis < 3; axis++) {
     lower[axis] = least_of(NODE_PLANE(root, 2 * axis));
     upper[axis] = greatest_of(NODE_PLANE(root, 2 * axis + 1));

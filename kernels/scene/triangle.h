@@ -186,6 +186,7 @@ SUN_INLINE tri_int pierce(LeafAt leaf, const PreparedRay *ray, Pierced *p) {
 // drown in rounding: such a triangle is seen from its edge.
 SUN_INLINE float exact_distance(LeafAt leaf, int lane, const PreparedRay *ray, int *lost) {
   float x[3], y[3], z[3], reach_x = 0.0f, reach_y = 0.0f;
+  SUN_UNROLL
   for (int corner = 0; corner < 3; corner++) {
     z[corner] = TRI_CORNER(leaf, 3 * corner + ray->axis[2], lane) - ray->origin[2];
     x[corner] = fma(-ray->shear[0], z[corner], TRI_CORNER(leaf, 3 * corner + ray->axis[0], lane) - ray->origin[0]);
@@ -202,6 +203,7 @@ SUN_INLINE float exact_distance(LeafAt leaf, int lane, const PreparedRay *ray, i
   const float inverse = 1.0f / (det != 0.0f ? det : 1.0f);
   float t = fma(a * inverse, z[0], fma(b * inverse, z[1], c * inverse * z[2])) * ray->shear[2];
   float lower[3], upper[3];
+  SUN_UNROLL
   for (int axis = 0; axis < 3; axis++) {
     const float va = TRI_CORNER(leaf, axis, lane), vb = TRI_CORNER(leaf, 3 + axis, lane), vc = TRI_CORNER(leaf, 6 + axis, lane);
     const float ab_lower = SUN_LESSER(va, vb), ab_upper = SUN_GREATER(va, vb);
@@ -260,6 +262,7 @@ SUN_INLINE Distances distances_of(LeafAt leaf, const PreparedRay *ray, const Pie
   d.ok = pierced & (d.det != 0.0f) & (fabs(d.t) <= SUN_LARGEST);  // NaN fails
   tri_float enter = (tri_float)(0.0f), leave = (tri_float)(SUN_INFINITY);
   d.longest = (tri_float)(0.0f);
+  SUN_UNROLL
   for (int axis = 0; axis < 3; axis++) {
     const tri_float a = TRI_LOAD(leaf, axis), b = TRI_LOAD(leaf, 3 + axis), c = TRI_LOAD(leaf, 6 + axis);
     const tri_float ab_lower = SUN_LESSER(a, b), ab_upper = SUN_GREATER(a, b);

@@ -8,6 +8,7 @@
 #define SUN_NAMESPACE_BEGIN namespace sunstone::kernel {
 #define SUN_NAMESPACE_END }
 #define SUN_GLOBAL
+#define SUN_UNROLL
 #define SUN_CONSTANT static const
 #define SUN_STATIC_ASSERT(condition, name) static_assert(condition, #name)
 SUN_NAMESPACE_BEGIN
@@ -21,6 +22,9 @@ SUN_NAMESPACE_END
 #define SUN_NAMESPACE_BEGIN
 #define SUN_NAMESPACE_END
 #define SUN_GLOBAL __global
+// Before every loop over the elements of an array that is to stay in registers: PoCL unrolls none unasked, and what a loop indexes stands in memory, all that
+// is in one struct with it too.
+#define SUN_UNROLL _Pragma("unroll")
 #define SUN_CONSTANT __constant
 #define SUN_STATIC_ASSERT(condition, name) typedef char static_assert_##name[(condition) ? 1 : -1]
 #endif

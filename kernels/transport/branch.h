@@ -93,6 +93,7 @@ SUN_FN void store_branch_vertex(const SUN_GLOBAL Frame *frame, SUN_GLOBAL uint *
 #include "shared/path_fields.h"
 #undef PATH_FIELD
   store_records(branches, record, on, words);
+  SUN_UNROLL
   for (int k = 0; k < 16; k++) words[k] = (uint_n)(0);
   words[0] = bits_of_real(v->hit.t);
   words[1] = bits_of_real(v->hit.u);

@@ -67,16 +67,19 @@ SUN_FN Surface triangle_point(const Scene *scene, uint_n instance, uint_n primit
   }
 #endif
   s.uv0[0] = s.uv0[1] = s.uv1[0] = s.uv1[1] = (real)(0.0f);
+  SUN_UNROLL
   for (int i = 0; i < 4; i++) s.color[i] = (real)(1.0f);
 #if SUN_TEXTURES
 #if SUN_TRIANGLES
   surface_coordinates(scene, &s, &c, b.x, b.y);
 #endif
 #if SUN_SHAPES
+  SUN_UNROLL
   for (int i = 0; i < 2; i++) {
     s.uv0[i] = shape ? shape_uv[i] : s.uv0[i];
     s.uv1[i] = shape ? shape_uv[i] : s.uv1[i];
   }
+  SUN_UNROLL
   for (int i = 0; i < 4; i++) s.color[i] = shape ? (real)(1.0f) : s.color[i];
 #endif
 #endif

@@ -56,6 +56,7 @@ SUN_FN uint map_next_1(const LightMap *map, MapQuery *q) {
       const SUN_GLOBAL uint *entry = map->entries + (size_t)q->at * SUN_MAP_ENTRY_WORDS;
       q->at++;
       float x[3], distance2 = 0.0f, facing = 0.0f;
+      SUN_UNROLL
       for (int axis = 0; axis < 3; axis++) {
         x[axis] = as_float(entry[axis]);
         float to = x[axis] - q->place[axis];
@@ -64,6 +65,7 @@ SUN_FN uint map_next_1(const LightMap *map, MapQuery *q) {
       if (!(distance2 < map->radius * map->radius)) continue;
       uint vertex = entry[3];
       const SUN_GLOBAL uint *word = map->vertices + (size_t)vertex * map->records * 16;
+      SUN_UNROLL
       for (int axis = 0; axis < 3; axis++) facing += as_float(word[SUN_LIGHT_VERTEX_NORMAL + axis]) * q->normal[axis];
       uint flags = word[SUN_LIGHT_VERTEX_FLAGS];
       // Its normal stands on the side from which it was found.
@@ -71,6 +73,7 @@ SUN_FN uint map_next_1(const LightMap *map, MapQuery *q) {
       facing = q->solid | (flags & SUN_LIGHT_VERTEX_SOLID) ? facing : fabs(facing);
       if (!(facing > SUN_MERGE_COSINE)) continue;
       uint same = 1;
+      SUN_UNROLL
       for (int axis = 0; axis < 3; axis++) same = same & (map_cell(x[axis], map->radius) == q->cell[axis] ? 1u : 0u);
       if (same) return vertex;
     }
@@ -101,6 +104,7 @@ SUN_FN void map_begin(const LightMap *map, MapQueries *queries, vec3 position, v
   LANES_STORE(active, on);
   for (int lane = 0; lane < LANES; lane++) {
     MapQuery *q = &queries->lane[lane];
+    SUN_UNROLL
     for (int axis = 0; axis < 3; axis++) {
       q->place[axis] = x[axis][lane];
       q->normal[axis] = n[axis][lane];
