@@ -146,13 +146,120 @@ TEST(Shapes, AreHitWhereTheFormulasSay) {
   EXPECT_GT(misses, 100);
 }
 
+// Balls, disks and quads so skewed that rays lose more in their space than slabs make up for: what they meet there may lie off the shape's world box.
+Scene skewed_shapes(bool with_mesh) {
+  Scene scene = some_shapes(with_mesh);
+  scene.shapes.clear();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const auto any = [&] {
+    const float x = unit(random), y = unit(random);
+    return glm::vec3(x, y, unit(random));
+  };
+  for (int i = 0; i < 18; i++) {
+    const auto kind = static_cast<Shape::Kind>(i % 3);
+    const glm::vec3 x = any(), all_but_x = x + std::exp2(-5.0f - static_cast<float>(i / 3)) * any(), other = any();
+    const bool ball = kind == Shape::Kind::sphere;
+    scene.shapes.push_back({kind, "skewed", i % 2, placed(x, ball ? all_but_x : other, ball ? other : all_but_x, 2.0f * any())});
+  }
+  return scene;
+}
+
+// Rays at the outermost points of shapes along an axis, beside them and along the shapes' x, from near and far, that miss them by as little as floats
+// tell there.
+std::vector<TracedRay> rays_at_rims(const Scene &scene, int for_each) {
+  std::vector<TracedRay> rays;
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const Shape &shape : scene.shapes)
+    for (int i = 0; i < for_each && shape.kind != Shape::Kind::plane; i++) {
+      const int axis = i % 3;
+      const glm::dmat3 m(glm::dvec3(shape.transform[0]), glm::dvec3(shape.transform[1]), glm::dvec3(shape.transform[2]));
+      glm::dvec3 rim(m[0][axis], m[1][axis], m[2][axis]), along(0);
+      if (shape.kind != Shape::Kind::sphere) rim.y = 0;
+      rim = m * (shape.kind == Shape::Kind::quad ? glm::sign(rim) : glm::normalize(rim)) + glm::dvec3(shape.transform[3]);
+      for (int c = 0; c < 3; c++) along[c] = unit(random);
+      if (i % 2)
+        along = m[0] + 0.1 * along;
+      else
+        along[axis] = 0;
+      along = glm::normalize(along);
+      const double distance = std::exp2(10 * std::abs(unit(random)));
+      rays.push_back(ray_of(rim + m[0] * (1e-4 * distance * unit(random)) - distance * along, along));
+    }
+  return rays;
+}
+
+// The same shapes in boxes that decide nothing.
+FlatScene without_boxes(FlatScene flat) {
+  for (kernel::Instance &instance : flat.instances) {
+    std::fill_n(instance.lower, 3, -1e6f);
+    std::fill_n(instance.upper, 3, 1e6f);
+  }
+  return flat;
+}
+
+// Of a shape alone, without a tree: what its formula finds counts where the ray passes its box, at a distance that lies in it.
+TEST(Shapes, TheirBoxHasTheLastWord) {
+  const Scene skewed = skewed_shapes(false);
+  std::size_t wrong = 0, kept[3] = {}, refused[3] = {}, nearer[3] = {}, farther[3] = {};
+  for (const Shape &shape : skewed.shapes) {
+    Scene scene = skewed;
+    scene.shapes = {shape};
+    const FlatScene flat = flattened(scene), bare = without_boxes(flat);
+    const Tree tree = build_tree(flat, Layout::binary), bare_tree = build_tree(bare, Layout::binary);
+    const kernel::Instance &instance = flat.instances[0];
+    const auto kind = static_cast<std::size_t>(shape.kind);
+    for (const TracedRay &ray : rays_at_rims(scene, 3000)) {
+      Hit expected = host_closest(bare, bare_tree, ray, SUN_WANT_ALL);
+      const Hit hit = host_closest(flat, tree, ray, SUN_WANT_ALL);
+      if (expected.instance == SUN_NONE) {
+        wrong += hit.instance != SUN_NONE;
+        continue;
+      }
+      float reach[3];
+      const float *origin = ray.ray.origin, *low = instance.lower, *high = instance.upper;
+      for (int c = 0; c < 3; c++) reach[c] = std::max(std::abs(low[c] - origin[c]), std::abs(high[c] - origin[c]));
+      kernel::PreparedRay prepared;
+      ASSERT_TRUE(kernel::prepare_ray(&prepared, origin, ray.ray.direction, reach));
+      const kernel::Interval box = kernel::box_interval(&prepared, low[0], low[1], low[2], high[0], high[1], high[2], 0);
+      if (box.near > box.far) {
+        refused[kind]++;
+        wrong += hit.instance != SUN_NONE;
+        continue;
+      }
+      (expected.t < box.near ? farther : expected.t > box.far ? nearer : kept)[kind]++;
+      expected.t = std::clamp(expected.t, box.near, box.far);
+      wrong += !same(hit, expected);
+    }
+  }
+  EXPECT_EQ(wrong, 0u);
+  for (std::size_t kind = 0; kind < 3; kind++) {
+    EXPECT_GT(kept[kind], 1000u) << "shape " << kind;
+    EXPECT_GT(refused[kind], 20u) << "shape " << kind;
+    EXPECT_GT(farther[kind], 10u) << "shape " << kind;
+    EXPECT_GT(nearer[kind], 10u) << "shape " << kind;
+  }
+}
+
+// How many of the rays meet something else, or elsewhere, for want of boxes.
+std::size_t decided_by_boxes(const FlatScene &flat, const std::vector<TracedRay> &rays) {
+  const FlatScene bare = without_boxes(flat);
+  const Tree tree = build_tree(flat, Layout::binary), bare_tree = build_tree(bare, Layout::binary);
+  std::size_t decided = 0;
+  for (const TracedRay &ray : rays) decided += !same(host_closest(flat, tree, ray, SUN_WANT_ALL), host_closest(bare, bare_tree, ray, SUN_WANT_ALL));
+  return decided;
+}
+
 TEST(Shapes, OfEveryLayoutTheSameBits) {
   const std::optional<Device> device = test_device();
   if (!device) GTEST_SKIP() << "SKIP: no OpenCL device";
-  for (const bool with_mesh : {false, true}) {
-    const FlatScene flat = flattened(some_shapes(with_mesh));
+  for (const Scene &scene : {some_shapes(false), some_shapes(true), skewed_shapes(true)}) {
+    const FlatScene flat = flattened(scene);
     const Tree tree = build_tree(flat, Layout::binary);
-    std::vector<TracedRay> rays = random_rays(3000, 6);
+    std::vector<TracedRay> rays = random_rays(3000, 6), rims = rays_at_rims(scene, 200);
+    EXPECT_GE(decided_by_boxes(flat, rims), scene.shapes[0].name == "skewed" ? 50u : 0u);
+    rays.insert(rays.end(), rims.begin(), rims.end());
     const std::size_t fresh = rays.size();
     for (std::size_t i = 0; i < fresh; i++) {  // and on behind the first hit
       const Hit hit = host_closest(flat, tree, rays[i], SUN_WANT_ALL);
@@ -173,8 +280,8 @@ TEST(Shapes, OfEveryLayoutTheSameBits) {
         wrong += !same(hits[i], expected);
         wrong_any += (any[i] != 0) != (expected.instance != SUN_NONE);
       }
-      EXPECT_EQ(wrong, 0u) << layout_name(layout) << (with_mesh ? " with a mesh" : "");
-      EXPECT_EQ(wrong_any, 0u) << layout_name(layout);
+      EXPECT_EQ(wrong, 0u) << layout_name(layout) << ", " << scene.shapes[0].name << ", meshes: " << scene.meshes.size();
+      EXPECT_EQ(wrong_any, 0u) << layout_name(layout) << ", " << scene.shapes[0].name << ", meshes: " << scene.meshes.size();
     }
   }
 }
@@ -198,8 +305,8 @@ Scene scattered_shapes(unsigned seed, bool with_mesh) {
   return scene;
 }
 
-// Rays from everywhere, from within balls, that graze them, along the floor, that end before or at what they would meet, that have no direction; and on
-// behind what they met.
+// Rays from everywhere, from within balls, that graze them, at rims, along the floor, that end before or at what they would meet, that have no
+// direction; and on behind what they met.
 std::vector<TracedRay> all_sorts_of_rays(const Scene &scene, const FlatScene &flat, const Tree &tree) {
   std::vector<TracedRay> rays = random_rays(1500, 4);
   std::mt19937 random(11);
@@ -212,6 +319,7 @@ std::vector<TracedRay> all_sorts_of_rays(const Scene &scene, const FlatScene &fl
       rays.push_back(ray_of(center + m * (0.5 * normal), direction()));
       rays.push_back(ray_of(center + m * normal - m * (4.0 * along) * (1 + 1e-7 * i), m * along));
     }
+  for (const TracedRay &ray : rays_at_rims(scene, 100)) rays.push_back(ray);
   for (int i = 0; i < 64; i++) rays.push_back(ray_of({-3, -0.5, 0.1 * i - 3}, {1, i % 3 ? 0 : 1e-9, 0.01 * i}));
   const std::size_t fresh = rays.size();
   for (std::size_t i = 0; i < fresh; i++) {
@@ -255,11 +363,11 @@ TEST(Shapes, AskedByLanesGiveTheHitsOfTheTree) {
     const Program program = Program::from_text(*device, "lanes.cl", text,
                                                {{"LANES", way.lanes}, {"SUN_LAYOUT", int(way.layout)}, {"SUN_FEW_SHAPES", way.few}, {"SUN_TRIANGLES", way.with_mesh}});
     const Kernel kernel(program, "probe_lanes");
-    for (const unsigned seed : {1u, 2u}) {
-      const Scene scene = scattered_shapes(seed, way.with_mesh);
+    for (const Scene &scene : {scattered_shapes(1, way.with_mesh), scattered_shapes(2, way.with_mesh), skewed_shapes(way.with_mesh)}) {
       const FlatScene flat = flattened(scene);
       const Tree binary = build_tree(flat, Layout::binary), tree = build_tree(flat, way.layout);
       const std::vector<TracedRay> rays = all_sorts_of_rays(scene, flat, binary);
+      EXPECT_GE(decided_by_boxes(flat, rays), scene.shapes[0].name == "skewed" ? 50u : 0u);
       kernel::Frame frame{};
       frame.instance_count = uint(flat.instances.size() - flat.plane_count);
       frame.plane_count = uint(flat.plane_count);
