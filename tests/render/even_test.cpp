@@ -498,9 +498,9 @@ TEST(Bowl, SharesOfStrategies) {
     }
 }
 
-// Lit by a point at its centre, in a picture that is mostly beside it, so that paths of light reach the lens more often than camera rays reach the bowl. All that a walk finds next
-// lies evenly on the sphere, so the strategies with an eye vertex are equally likely, and the one that ends in the lens weighs against them by how much of the picture a
-// piece of the bowl takes up: less where it is steep.
+// Lit by a point at its centre, in a picture that is mostly beside it, so that paths of light reach the lens more often than camera rays reach the bowl.
+// All that a walk finds next lies evenly on the sphere, so the strategies with an eye vertex are equally likely, and the one that ends in the lens weighs
+// against them by how much of the picture a piece of the bowl takes up: less where it is steep.
 TEST(Bowl, SharesBesideALargePicture) {
   constexpr double half = 2.5, area = 4 * half * half;
   Scene scene = bowl();
@@ -525,6 +525,22 @@ TEST(Bowl, SharesBesideALargePicture) {
       EXPECT_EQ(differs(films, layer, whole(films[0]), radiance * static_cast<float>(share * pi / area), 1e-3), "");
       EXPECT_LT(relative_error(films, layer), 0.005) << "is too noisy to tell";
     }
+  }
+}
+
+// A closed sphere with a point light at its centre: a bounce is as bright as the one before, but for what the wall absorbs. Merging is likelier than
+// joining, and as likely in one vertex as in another, so that weight is lost or won where a density of one of them is wrong.
+TEST(Bowl, ClosedAroundALight) {
+  Scene scene = bowl();
+  scene.materials[0].alpha_mode = AlphaMode::opaque;
+  add_point_light(scene, {0, 0, 0}, {4, 3, 2});
+  const Case made(std::move(scene));
+  const std::vector<Film> films = films_of(made, {"vcm", 5, 0.0015, 1e-3, 64, 0, 0.05f}, 3);
+  glm::vec3 expected = albedo * glm::vec3(4, 3, 2) / static_cast<float>(pi);
+  for (const std::string &layer : bounces(2, 3)) {
+    expected *= albedo;
+    EXPECT_EQ(differs(films, layer, whole(films[0]), expected, 1e-3), "");
+    EXPECT_LT(relative_error(films, layer), 0.0015) << layer << " is too noisy to tell";
   }
 }
 
