@@ -3,8 +3,11 @@
 // them alone and unweighted. All tests of this file together are Holm-corrected to a false alarm in 10^6 runs.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/agree.h"
 #include "support/scenes.h"
+#include "support/statistics.h"
 
 namespace sunstone::test {
 namespace {
@@ -395,8 +398,8 @@ TEST(Bdpt, StripesOnTheEdgesOfPixels) {
   expect_alone(made, s, render_seeds(made, s, 64, seeds), 2, 1, 128, 0.004, 16);
 }
 
-// A mirror and a slab of glass whose smooth normals lean away from the true ones, so that light leaves a surface at another angle than it came: light paths alone, against what
-// the eye finds through them.
+// A mirror and a slab of glass whose smooth normals lean away from the true ones, so that light leaves a surface at another angle than it came: light
+// paths alone, against what the eye finds through them.
 TEST(Bdpt, SmoothNormalsThatBendDeltas) {
   const auto lean = [](Primitive p, int axis, glm::vec3 by) {  // faces across the axis, here more than there
     for (std::size_t i = 0; i < p.normals.size(); i++)
@@ -418,6 +421,49 @@ TEST(Bdpt, SmoothNormalsThatBendDeltas) {
     const Case made(std::move(scene));
     const RenderSettings s = picture(16, 16, 3);
     expect_alone(made, s, render_seeds(made, s, 96, seeds), mirror ? 3 : 4, 1, 96, 0.012);
+  }
+}
+
+// A small bright square out of focus: it is drawn as wide as the lens, to the eye and to light paths, along both axes. The distance from the middle,
+// squared, is on the mean a quarter of the blur's radius squared, what the square itself adds, and a twelfth of a pixel.
+TEST(Bdpt, ALensIsAsWideToLightAsToTheEye) {
+  constexpr int size = 24;
+  constexpr double half = 0.15, distance = 4, focus = 1.5, lens = 0.5;
+  const double pixel = 2 * std::tan(20 * M_PI / 180) / size;  // at a metre
+  const double blur = lens * (1 / focus - 1 / distance) / pixel, square = half / distance / pixel;
+  Scene scene;
+  add(scene, quad({0, 0, 0}, {half, 0, 0}, {0, half, 0}), matt({0.8f, 0.8f, 0.8f}));
+  Light light = sun_light();
+  light.direction = {0, 0, -1};
+  scene.lights.push_back(light);
+  add_camera(scene, {0, 0, distance}, {0, 0, 0}, 40);
+  scene.cameras[0].lens_radius = lens;
+  scene.cameras[0].focus_distance = focus;
+  const Case made(std::move(scene));
+  RenderSettings s = picture(size, size, 1);
+  s.filter = box_filter();
+  for (const bool by_light : {false, true}) {
+    if (by_light) s.integrator = "bdpt", s.strategy_s = 2, s.strategy_t = 1, s.unweighted = true;
+    std::vector<double> wide, high;
+    for (const Film &film : render_seeds(made, s, by_light ? 32 : 256, seeds)) {
+      double all = 0, x2 = 0, y2 = 0;
+      for (int y = 0; y < size; y++)
+        for (int x = 0; x < size; x++) {
+          const double value = mean(film, "bounce.1", {x, y, x + 1, y + 1}, 1), dx = x + 0.5 - size / 2.0, dy = y + 0.5 - size / 2.0;
+          all += value;
+          x2 += value * dx * dx;
+          y2 += value * dy * dy;
+        }
+      wide.push_back(x2 / all);
+      high.push_back(y2 / all);
+    }
+    const double expected = blur * blur / 4 + square * square / 3 + 1.0 / 12;
+    for (const auto &[axis, values] : {std::pair("across", &wide), std::pair("up", &high)}) {
+      SCOPED_TRACE(std::string(by_light ? "light, " : "eye, ") + axis);
+      const Moments m = moments(*values);
+      EXPECT_NEAR(m.mean, expected, interval(m, 1e-9) + 2e-3 * expected);
+      EXPECT_LT(interval(m, 1e-9), 0.04 * expected) << "is too noisy to tell";
+    }
   }
 }
 
