@@ -11,6 +11,7 @@
 #include "support/render.h"
 #include "support/scenes.h"
 #include "support/statistics.h"
+#include "transport/light_map.h"
 
 namespace sunstone::test {
 namespace {
@@ -360,6 +361,35 @@ TEST(Photons, StayOnTheirSideOfASlab) {
   }
   EXPECT_GT(seen[0], 1e-3) << "the test sees nothing";
   EXPECT_LT(seen[1], 1e-4 * seen[0]);
+}
+
+// A place whose photons stand in two cells that share a bucket, whatever the number of buckets: each is found in its own cell alone, and counts once.
+TEST(Photons, CellsThatShareABucket) {
+  constexpr float radius = 0.25f;
+  constexpr kernel::uint mask = 0xffff;  // of as many buckets as 16384 photons of three bounces may have
+  int cell[3] = {0, 0, 0}, next[3] = {1, 0, 0};
+  for (int i = 0; kernel::map_bucket(cell, mask) != kernel::map_bucket(next, mask); i++) {
+    ASSERT_LT(i, 1 << 20);
+    cell[0] = i / 512;
+    next[0] = cell[0] + 1;
+    cell[2] = next[2] = i % 512;
+  }
+  // A floor half way up a layer of cells, looked at where these two meet the two beside them.
+  const glm::vec3 at = 2 * radius * glm::vec3(next[0], 0.5f, cell[2] + 1);
+  for (const float beside : {-0.1f, 0.1f}) {
+    ASSERT_EQ(kernel::map_cell(at.x + beside, radius), beside < 0 ? cell[0] : next[0]);
+    ASSERT_EQ(kernel::map_cell(at.y + beside, radius), 0);
+    ASSERT_EQ(kernel::map_cell(at.z + beside, radius), beside < 0 ? cell[2] : cell[2] + 1);
+  }
+  Scene scene;
+  Material wall = matt({0.5f, 0.25f, 0.75f});
+  wall.emission = {1, 2, 1};
+  add(scene, box(at + glm::vec3(-1, 0, -1), at + glm::vec3(1, 2, 1), true), wall);
+  add_camera(scene, at + glm::vec3(0, 1.5f, 0.1f), at, 2);
+  const std::vector<Film> films = render_seeds(Case(std::move(scene)), sppm(picture(8, 8, 3), 16384, radius), 8, seeds);
+  EXPECT_EQ(differs(films, "bounce.2", whole(films[0]), {0.25f, 0.125f, 0.5625f}, 1e-3), "");
+  const Mean m = mean_of(films, "bounce.2", whole(films[0]), 1);
+  EXPECT_LT(m.error, 0.03 * m.value) << "too noisy to tell";
 }
 
 }  // namespace sunstone::test
