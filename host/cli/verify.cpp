@@ -21,6 +21,7 @@ namespace {
 // prints what it found, and tests/cli holds PoCL to them.
 struct Expected {
   const char *integrator, *film_hash;
+  bool shapes = false;  // of the other little scene
 };
 constexpr Expected expected[] = {{"path", "fde23fd9c9a6d6faee8566fa5c158c67"},
                                  {"pure", "3b658440b4f7897397804b2ff7fd1ac8"},
@@ -30,7 +31,8 @@ constexpr Expected expected[] = {{"path", "fde23fd9c9a6d6faee8566fa5c158c67"},
                                  {"bdpt", "e694f7c8e41d271b1273c1c97f55a94e"},
                                  {"sppm", "c5fbc587850b4d656d9b3e7b3afabddc"},
                                  {"photon", "b6ccce5c7ef467ecdb1352f830b60ee2"},
-                                 {"vcm", "13280e305d5c4c1fb43f20941b17ae70"}};
+                                 {"vcm", "13280e305d5c4c1fb43f20941b17ae70"},
+                                 {"whitted", "3feeb7b0f53abe26bcf6622188050b26", true}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -82,12 +84,12 @@ void Verify::scenes(const Device &device) {
   for (const Variant &variant : variants) {
     std::unique_ptr<Programs> programs;
     for (const Expected &e : expected) {
-      Scene scene = make_verify_scene(integrator(e.integrator).refuses.empty());
+      Scene scene = e.shapes ? make_verify_shapes() : make_verify_scene(integrator(e.integrator).refuses.empty());
       FlattenOptions flatten;
       flatten.layout = variant.layout;
       flatten.max_page_bytes = device.info().max_allocation;
       const FlatScene flat = content.flatten(scene, flatten, notices_);
-      const std::string title = fmt::format("{}, lanes {}, {}", e.integrator, variant.lanes, layout_name(variant.layout));
+      const std::string title = fmt::format("{}{}, lanes {}, {}", e.integrator, e.shapes ? " of shapes" : "", variant.lanes, layout_name(variant.layout));
       const double begun = now();
       RenderSettings settings;
       settings.width = settings.x1 = 64;

@@ -51,6 +51,33 @@ Image checker(int size, bool alpha) {
   return {alpha ? "leaf" : "checker", size, size, alpha ? 4 : 3, std::move(pixels)};
 }
 
+// Adds a material that is double-sided, and what `set` makes of it.
+template <class Set> int add_material(Scene &s, Set &&set) {
+  Material m;
+  m.double_sided = true;
+  set(m);
+  s.materials.push_back(m);
+  return static_cast<int>(s.materials.size() - 1);
+}
+
+Light point_light() {
+  Light light;
+  light.position = {2, 2, 1};
+  light.intensity = {2, 2, 3};
+  return light;
+}
+
+Light spot_light() {
+  Light light;
+  light.kind = Light::Kind::spot;
+  light.position = {-2, 3, 2};
+  light.direction = {0.48f, -0.8f, -0.36f};
+  light.intensity = {12, 6, 6};
+  light.inner_angle = 0.2f;
+  light.outer_angle = 0.4f;
+  return light;
+}
+
 }  // namespace
 
 Scene make_verify_scene(bool punctual) {
@@ -58,13 +85,7 @@ Scene make_verify_scene(bool punctual) {
   s.name = "verify";
   s.images = {checker(8, false), checker(8, true)};
   s.textures = {{0, Wrap::repeat, Wrap::mirror, true}, {1, Wrap::clamp, Wrap::repeat, false}};
-  const auto material = [&](auto &&set) {
-    Material m;
-    m.double_sided = true;
-    set(m);
-    s.materials.push_back(m);
-    return static_cast<int>(s.materials.size() - 1);
-  };
+  const auto material = [&](auto &&set) { return add_material(s, set); };
   const int floor = material([](Material &m) { m.base_color_texture.texture = 0, m.base_color_texture.transform = {3, 0, 0, 3, 0.25f, 0}, m.roughness = 0.6f; });
   const int wall = material([](Material &m) { m.base_color = {0.7f, 0.5f, 0.4f}, m.f0 = glm::vec3(0), m.f90 = 0; });
   const int glass = material([](Material &m) { m.transmission = 1, m.volume = true, m.roughness = 0, m.ior = 1.5f, m.absorption = {0.2f, 1.5f, 0.6f}; });
@@ -109,24 +130,43 @@ Scene make_verify_scene(bool punctual) {
   s.environment.map = std::make_shared<const Image>(Image{"sky", 16, 8, 3, std::move(sky)});
   s.environment.rotation = 0.1f;
   if (punctual) {
-    Light point, spot, sun;
-    point.position = {2, 2, 1};
-    point.intensity = {2, 2, 3};
-    spot.kind = Light::Kind::spot;
-    spot.position = {-2, 3, 2};
-    spot.direction = {0.48f, -0.8f, -0.36f};
-    spot.intensity = {12, 6, 6};
-    spot.inner_angle = 0.2f;
-    spot.outer_angle = 0.4f;
+    Light sun;
     sun.kind = Light::Kind::directional;
     sun.direction = {0.6f, -0.8f, 0};
     sun.intensity = {0.5f, 0.5f, 0.4f};
-    s.lights = {point, spot, sun};
+    s.lights = {point_light(), spot_light(), sun};
   }
   Camera camera;
   camera.transform[3] = {0.2f, 1.7f, 6};
   camera.lens_radius = 0.02f;
   camera.focus_distance = 6;
+  s.cameras.push_back(camera);
+  return s;
+}
+
+Scene make_verify_shapes() {
+  Scene s;
+  s.name = "verify shapes";
+  s.images = {checker(8, false)};
+  s.textures = {{0, Wrap::repeat, Wrap::mirror, false}};
+  const int floor = add_material(s, [](Material &m) { m.base_color_texture.texture = 0, m.base_color_texture.transform = {3, 0, 0, 3, 0.25f, 0}, m.f0 = glm::vec3(0), m.f90 = 0; });
+  const int ground = add_material(s, [](Material &m) { m.base_color = {0.3f, 0.4f, 0.2f}, m.f0 = glm::vec3(0), m.f90 = 0; });
+  const int glass = add_material(s, [](Material &m) { m.transmission = 1, m.volume = true, m.roughness = 0, m.ior = 1.5f, m.absorption = {0.2f, 1.5f, 0.6f}; });
+  const int gloss = add_material(s, [](Material &m) { m.base_color = {0.7f, 0.2f, 0.1f}, m.roughness = 0; });
+  const int metal = add_material(s, [](Material &m) { m.metallic = 1, m.roughness = 0.35f, m.base_color = {0.95f, 0.7f, 0.3f}; });
+  const int lamp = add_material(s, [](Material &m) { m.base_color = glm::vec3(0), m.emission = {3, 2.5f, 2}, m.double_sided = false; });
+  const auto shape = [&](Shape::Kind kind, int material, const glm::mat4x3 &transform) { s.shapes.push_back({kind, "", material, transform}); };
+  shape(Shape::Kind::quad, floor, {{3, 0, 0}, {0, 1, 0}, {0, 0, 3}, {0, 0, 0}});
+  shape(Shape::Kind::plane, ground, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -0.5f, 0}});
+  shape(Shape::Kind::sphere, glass, {{0.8f, 0, 0}, {0, 0.8f, 0}, {0, 0, 0.8f}, {-1.2f, 0.85f, 1}});
+  shape(Shape::Kind::sphere, gloss, {{0.7f, 0, 0}, {0, 0.7f, 0}, {0, 0, 0.7f}, {1, 0.7f, -0.5f}});
+  shape(Shape::Kind::sphere, metal, {{-0.6f, 0.1f, 0}, {0, 0.4f, 0.2f}, {0.1f, 0, 0.5f}, {1.4f, 0.5f, 1.6f}});  // sheared, and its own mirror image
+  shape(Shape::Kind::disk, lamp, {{0.6f, 0.2f, 0}, {0.2f, -0.6f, 0.1f}, {0, 0.1f, 0.6f}, {0, 2.8f, -1}});
+  s.environment.kind = Environment::Kind::constant;
+  s.environment.constant = {0.2f, 0.3f, 0.5f};
+  s.lights = {point_light(), spot_light()};
+  Camera camera;
+  camera.transform[3] = {0.2f, 1.4f, 6};
   s.cameras.push_back(camera);
   return s;
 }

@@ -8,4 +8,7 @@ namespace sunstone {
 // With punctual lights for integrators that can meet them.
 Scene make_verify_scene(bool punctual);
 
+// A few analytic shapes, which kernels with lanes ask one after the other: a matt floor with a texture, clear glass, a glossy ball, all kinds of shapes, and lights.
+Scene make_verify_shapes();
+
 }  // namespace sunstone
