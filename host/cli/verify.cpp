@@ -28,10 +28,10 @@ constexpr Expected expected[] = {{"path", "fde23fd9c9a6d6faee8566fa5c158c67"},
                                  {"hybrid", "72251da841739d3e1bd54f0be1122530"},
                                  {"distribution", "fdc18a93b42d0a165edb779d587e297a"},
                                  {"whitted", "cc0e053e0b23a1e51092dc7340a8bb8b"},
-                                 {"bdpt", "e694f7c8e41d271b1273c1c97f55a94e"},
-                                 {"sppm", "c5fbc587850b4d656d9b3e7b3afabddc"},
-                                 {"photon", "b6ccce5c7ef467ecdb1352f830b60ee2"},
-                                 {"vcm", "13280e305d5c4c1fb43f20941b17ae70"},
+                                 {"bdpt", "35282e7b9dcb2534bfe2fbb04bb21858"},
+                                 {"sppm", "e53384404bc93dbd8db63301a4ca4a4e"},
+                                 {"photon", "654f79f50efe7c103f30b13cff008f2c"},
+                                 {"vcm", "12d6aec4a5a396c0628eae2494a1fcab"},
                                  {"whitted", "3feeb7b0f53abe26bcf6622188050b26", true}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }

@@ -11,8 +11,8 @@
 #include "transport/step.h"
 
 // Triangles of one side let eyes look through from behind, so light passes them from the front as well as being scattered there; which, a coin decides. Rarely,
-// as there is seldom anything behind.
-#define SUN_PASSES_ONE_SIDED 0.0625f
+// as there is seldom anything behind; not so rarely that what is there gets a few photons of great weight (docs/decisions/0006).
+#define SUN_PASSES_ONE_SIDED 0.125f
 
 SUN_BODY void deposit_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_GLOBAL uint *path_words, SUN_GLOBAL uint *walks, SUN_GLOBAL uint *light_vertices,
                              SUN_GLOBAL uint *status, const SUN_GLOBAL Hit *hits, SUN_GLOBAL ShadowRay *shadow_rays, const SUN_GLOBAL uint *rays,

@@ -40,9 +40,9 @@ SUN_BODY void gather_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, con
   side.normal = surface.normal;
   side.wo_local = to_local(&surface.shading, wo);
   Lobes lobes = bsdf_lobes(&bsdf, scene->tables, side.wo_local);
-  side.lobes = SUN_MERGING ? lobes : gathering_lobes(frame, &lobes);
+  side.lobes = SUN_MERGING ? lobes : gathering_lobes(frame, &lobes, (uint_n)(phase));
   mask blurred = gathers & !gathers;
-  if (!SUN_MERGING) blurred = gathers & blurred_facets(frame, &lobes);
+  if (!SUN_MERGING) blurred = gathers & blurred_facets(frame, &lobes, (uint_n)(phase));
   Side facets = side;
   facets.lobes = lobes_part(&lobes, blurred, blurred & !blurred);
   gathers = gathers & (SUN_MERGING ? !only_delta(&lobes) : has_lobes(&side.lobes) | blurred);

@@ -131,7 +131,7 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
           real u_choice = sample_1d(&light_key, SUN_DIM_EMITTER(path.vertex));
           vec2 u_point = sample_2d(&light_key, SUN_DIM_EMITTER_POINT(path.vertex));
 #if SUN_PHOTONS
-          DirectSample direct = sample_direct_parts(scene, &surface, &lobes, wo_local, u_choice, u_point, asks);
+          DirectSample direct = sample_direct_parts(scene, &surface, &lobes, phase, wo_local, u_choice, u_point, asks);
 #else
           DirectSample direct = sample_direct(scene, &surface, &lobes, wo_local, u_choice, u_point, asks);
 #endif
@@ -154,7 +154,7 @@ SUN_BODY void shade_bundle(const SUN_GLOBAL Frame *frame, SCENE_PARAMETERS, SUN_
       vec2 u = sample_2d(&scatter_key, SUN_DIM_DIRECTION(path.vertex));
 #if SUN_PHOTONS
       mask sharp;
-      lobes = next_lobes(frame, &lobes, &u_lobe, &sharp);
+      lobes = next_lobes(frame, &lobes, phase, &u_lobe, &sharp);
       uint_n beyond = (frame->flags & SUN_FRAME_FINAL_GATHER) ? phase + (uint_n)(1) : last;
       phase = sharp ? phase : beyond;
 #endif

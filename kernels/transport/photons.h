@@ -10,28 +10,31 @@
 
 SUN_NAMESPACE_BEGIN
 
-// Roughness^2 below which facets are sharp. Caustics are what deltas alone leave, so that where these have a map of their own nothing else is sharp.
+// Roughness^2 below which facets are sharp. A map of caustics stays the same for all samples, so that what few photons of it leave in gloss stays, too: more is sharp there.
+// Behind the surface that looked at it nothing is but deltas, as caustics are what these alone leave.
 #define SUN_SHARP_ALPHA 0.09f
+#define SUN_SHARP_ALPHA_FIRST 0.25f
 
-SUN_FN mask sharp_facets(const SUN_GLOBAL Frame *frame, const Lobes *l) {
-  float least = (frame->flags & SUN_FRAME_FINAL_GATHER) ? 0.0f : SUN_SHARP_ALPHA;
-  return (l->pick_facets > 0.0f) & (l->delta_reflection | l->delta_transmission | (l->alpha < least));
+SUN_FN mask sharp_facets(const SUN_GLOBAL Frame *frame, const Lobes *l, uint_n phase) {
+  real most = (real)(SUN_SHARP_ALPHA);
+  if (frame->flags & SUN_FRAME_FINAL_GATHER) most = phase == (uint_n)(SUN_PHASE_SHARP) ? (real)(SUN_SHARP_ALPHA_FIRST) : (real)(0.0f);
+  return (l->pick_facets > 0.0f) & (l->delta_reflection | l->delta_transmission | (l->alpha < most));
 }
 
 // The part that looks at photons.
-SUN_FN Lobes gathering_lobes(const SUN_GLOBAL Frame *frame, const Lobes *l) {
-  mask sharp = sharp_facets(frame, l);
+SUN_FN Lobes gathering_lobes(const SUN_GLOBAL Frame *frame, const Lobes *l, uint_n phase) {
+  mask sharp = sharp_facets(frame, l, phase);
   return lobes_part(l, !sharp, sharp | !sharp);
 }
 
 // Sharp facets that are no deltas look at those photons that a path does not find: what mirrors and glass make of lights without extent.
-SUN_FN mask blurred_facets(const SUN_GLOBAL Frame *frame, const Lobes *l) {
-  return frame->light_count > 0 ? sharp_facets(frame, l) & !l->delta_reflection : l->delta_reflection & !l->delta_reflection;
+SUN_FN mask blurred_facets(const SUN_GLOBAL Frame *frame, const Lobes *l, uint_n phase) {
+  return frame->light_count > 0 ? sharp_facets(frame, l, phase) & !l->delta_reflection : l->delta_reflection & !l->delta_reflection;
 }
 
 // The part that the next ray is drawn from, as `u_lobe` picks, which is made to fit. `sharp`: it goes on as a path; else the rays of gathering_lobes.
-SUN_FN Lobes next_lobes(const SUN_GLOBAL Frame *frame, const Lobes *l, real *u_lobe, mask *sharp) {
-  mask facets = sharp_facets(frame, l);
+SUN_FN Lobes next_lobes(const SUN_GLOBAL Frame *frame, const Lobes *l, uint_n phase, real *u_lobe, mask *sharp) {
+  mask facets = sharp_facets(frame, l, phase);
   *sharp = facets & (*u_lobe < l->pick_facets);
   mask rest = facets & !*sharp;
   *u_lobe = rest ? *u_lobe - l->pick_facets : *u_lobe;
@@ -39,12 +42,12 @@ SUN_FN Lobes next_lobes(const SUN_GLOBAL Frame *frame, const Lobes *l, real *u_l
 }
 
 // Next-event estimation for either part by itself, as each is weighted against rays of its own.
-SUN_FN DirectSample sample_direct_parts(const Scene *scene, const Surface *s, const Lobes *lobes, vec3 wo_local, real u_choice, vec2 u_point, mask active) {
+SUN_FN DirectSample sample_direct_parts(const Scene *scene, const Surface *s, const Lobes *lobes, uint_n phase, vec3 wo_local, real u_choice, vec2 u_point, mask active) {
   EmitterSample sample = sample_emitter(scene, s, u_choice, u_point, active);
   mask valid = active & (sample.pdf > 0.0f) & (max_of3(sample.emission) > 0.0f);
-  Lobes part = gathering_lobes(scene->frame, lobes);
+  Lobes part = gathering_lobes(scene->frame, lobes, phase);
   DirectSample direct = direct_of(scene, s, &part, wo_local, &sample, weighted_by_chance(scene), valid);
-  mask sharp = valid & sharp_facets(scene->frame, lobes) & !lobes->delta_reflection;
+  mask sharp = valid & sharp_facets(scene->frame, lobes, phase) & !lobes->delta_reflection;
   if (ANY(sharp)) {
     part = lobes_part(lobes, sharp, sharp & !sharp);
     DirectSample more = direct_of(scene, s, &part, wo_local, &sample, weighted_by_chance(scene), sharp);

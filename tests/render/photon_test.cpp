@@ -392,4 +392,47 @@ TEST(Photons, CellsThatShareABucket) {
   EXPECT_LT(m.error, 0.03 * m.value) << "too noisy to tell";
 }
 
+// A map of caustics is the same for all samples, so what its photons leave in gloss stays: a varnished board that a glass ball and a lamp stand on is dotted by them, unless its
+// gloss goes on as a path.
+TEST(Photons, GlossIsNotDottedByCaustics) {
+  Scene scene;
+  Material board = matt({0.1f, 0.06f, 0.04f});
+  board.f0 = glm::vec3(0.04f);
+  board.f90 = 1;
+  board.roughness = 0.42f;
+  add(scene, quad({0, 0, 0}, {3, 0, 0}, {0, 0, -3}), board);
+  add(scene, sphere({0.2f, 0.4f, -0.5f}, 0.4f, 24), glass({0.3f, 0.1f, 0}));
+  add(scene, quad({0, 0.8f, -2.5f}, {1.5f, 0, 0}, {0, 0.6f, 0}), lamp({3, 3, 3}));
+  add_camera(scene, {0, 0.8f, 3}, {0, 0.1f, 0}, 30);
+  const Case made(std::move(scene));
+  RenderSettings s = picture(32, 24, 4);
+  s.filter = box_filter();
+  const std::vector<Film> films = render_seeds(made, photon(s, 20000, 0.08f, 0.04f), 64, seeds);
+  // The board before the ball, and beside it.
+  double variance = 0, all = 0;
+  for (int y = 12; y < 24; y++)
+    for (int x = 0; x < 32; x++) {
+      const Mean m = mean_of(films, "beauty", {x, y, x + 1, y + 1}, 1);
+      variance += m.error * m.error * seeds;
+      all += m.value;
+    }
+  const double count = 12 * 32;
+  EXPECT_LT(std::sqrt(variance / count), 0.4 * all / count);
+}
+
+// The eye looks into a room from behind its wall, and light falls through that wall on the floor before it: few photons take that way, but not so few that each weighs too much.
+TEST(Photons, BehindWallsOfOneSide) {
+  Scene scene;
+  Material wall = matt({0.7f, 0.6f, 0.5f});
+  wall.double_sided = false;
+  add(scene, box({-1, 0, -1}, {1, 1.6f, 1}, true), wall);
+  add(scene, quad({0, 1.3f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), lamp({5, 6, 7}));
+  add(scene, quad({0, -0.01f, 1.5f}, {2, 0, 0}, {0, 0, -3}), matt({0.6f, 0.6f, 0.7f}));
+  add_camera(scene, {0.5f, 1.1f, 6}, {0, 0.5f, 0}, 40);
+  const Case made(std::move(scene));
+  const std::vector<Film> films = render_seeds(made, sppm(picture(24, 16, 4), 4096, 0.15f), 4, 2 * seeds);
+  const Mean floor = mean_of(films, "bounce.2", {0, 12, 24, 16}, 1);
+  EXPECT_LT(floor.error, 0.095 * floor.value);
+}
+
 }  // namespace sunstone::test
