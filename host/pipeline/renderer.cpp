@@ -272,6 +272,8 @@ SampleRange Renderer::render(SampleRange wanted, const std::function<bool(const 
   State &s = *state_;
   if (wanted.first >= wanted.last) return {wanted.first, wanted.first};
   if (wanted.last > (std::uint64_t(1) << 32)) throw UsageError("--samples", "sample numbers end at 2^32");
+  std::vector<SampleRange> held = s.film.samples;
+  insert_samples(held, wanted);  // throws before anything is added that is there already
   std::uint64_t per_sample = 0, begun = 0;
   for (const Tile &tile : s.tiles) per_sample += tile.paths_per_sample();
   const std::uint64_t total = per_sample * (wanted.last - wanted.first);

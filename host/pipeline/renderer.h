@@ -58,7 +58,7 @@ class Renderer {
   void warm_up(const CompileProgress &progress);
 
   // Renders samples [first, last) of every pixel and adds them to the film. `progress` is asked between launches; where it answers false the call ends
-  // after the samples that have begun, all pixels alike. Returns what was done: [first, done).
+  // after the samples that have begun, all pixels alike. Returns what was done: [first, done). Throws Error before it begins where the film has some of them.
   SampleRange render(SampleRange wanted, const std::function<bool(const RenderProgress &)> &progress);
 
   // Of the same scene and size; the film is left as it is. The renderer has to outlive it. Throws Error where the integrator is not one fused walk.

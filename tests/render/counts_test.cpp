@@ -130,4 +130,22 @@ TEST(Counts, RaysOfATree) {
   }
 }
 
+// What the film holds already is refused before a path begins: it stays as it was, and goes on with what it does not hold.
+TEST(Counts, SamplesThatAreThereAreRefusedAndNotAdded) {
+  const Case scene(matt_room());
+  RenderSettings s = picture(16, 12, 3);
+  for (const char *integrator : {"path", "vcm"}) {
+    s.integrator = integrator;
+    for (const SampleRange &again : {SampleRange{0, 2}, {1, 2}, {1, 5}, {3, 8}}) {
+      const Twice twice = render_more(scene, s, {0, 4}, again);
+      EXPECT_NE(twice.refused.find("are there already"), std::string::npos) << twice.refused;
+      EXPECT_EQ(film_hash(twice.then).hex(), film_hash(twice.first).hex()) << integrator << " " << again.first << ":" << again.last;
+      EXPECT_EQ(twice.counted_then.paths, twice.counted_first.paths) << integrator;
+    }
+    const Twice twice = render_more(scene, s, {0, 4}, {4, 6});
+    EXPECT_EQ(twice.refused, "");
+    EXPECT_EQ(film_hash(twice.then).hex(), film_hash(render(scene, s, {0, 6}).film).hex()) << integrator;
+  }
+}
+
 }  // namespace sunstone::test

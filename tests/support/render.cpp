@@ -149,6 +149,20 @@ std::array<std::vector<std::int64_t>, 2> render_twice(const Case &scene, const R
   return {first, again.film()};
 }
 
+Twice render_more(const Case &scene, const RenderSettings &settings, SampleRange samples, SampleRange more) {
+  Renderer renderer = renderer_of(scene, settings, {});
+  renderer.render(samples, {});
+  Twice twice{renderer.film(), {}, renderer.counts(), {}, ""};
+  try {
+    renderer.render(more, {});
+  } catch (const Error &error) {
+    twice.refused = error.what();
+  }
+  twice.then = renderer.film();
+  twice.counted_then = renderer.counts();
+  return twice;
+}
+
 std::string refusal(const Case &scene, const RenderSettings &settings) {
   try {
     render(scene, settings, {0, 1});

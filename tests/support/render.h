@@ -65,6 +65,14 @@ std::vector<kernel::uint> show(const Case &scene, const RenderSettings &settings
 // A sample, twice by one renderer and each time into a new film: the integers of both, layer by layer.
 std::array<std::vector<std::int64_t>, 2> render_twice(const Case &scene, const RenderSettings &settings, std::uint64_t sample);
 
+// Of one renderer: `samples`, then `more`.
+struct Twice {
+  Film first, then;
+  RenderCounts counted_first, counted_then;
+  std::string refused;  // what it said to `more`, if it did not render it
+};
+Twice render_more(const Case &scene, const RenderSettings &settings, SampleRange samples, SampleRange more);
+
 // What of the settings a renderer refuses, as a UsageError names it; empty where it renders.
 std::string refusal(const Case &scene, const RenderSettings &settings);
 
