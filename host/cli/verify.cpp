@@ -29,9 +29,9 @@ constexpr Expected expected[] = {{"path", "fde23fd9c9a6d6faee8566fa5c158c67"},
                                  {"distribution", "fdc18a93b42d0a165edb779d587e297a"},
                                  {"whitted", "cc0e053e0b23a1e51092dc7340a8bb8b"},
                                  {"bdpt", "35282e7b9dcb2534bfe2fbb04bb21858"},
-                                 {"sppm", "e53384404bc93dbd8db63301a4ca4a4e"},
-                                 {"photon", "654f79f50efe7c103f30b13cff008f2c"},
-                                 {"vcm", "12d6aec4a5a396c0628eae2494a1fcab"},
+                                 {"sppm", "51b2238682dca39cbbf630aabe7742c3"},
+                                 {"photon", "29961b6c109810fc9e91c70ba4ac5eb6"},
+                                 {"vcm", "a0cd32fb3b7d8bc01aa4cce560e2665b"},
                                  {"whitted", "3feeb7b0f53abe26bcf6622188050b26", true}};
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }

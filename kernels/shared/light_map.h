@@ -28,5 +28,8 @@ SUN_NAMESPACE_BEGIN
 // Vertices merge where their surfaces face the same way within this cosine, 60 degrees: facets of a coarse mesh do, walls of a room do not.
 #define SUN_MERGE_COSINE 0.5f
 
+// And where neither lies farther off the plane of the other than this share of the radius: what hangs close to a surface is another one.
+#define SUN_MERGE_OFF 0.2f
+
 SUN_NAMESPACE_END
 #endif

@@ -49,13 +49,13 @@ typedef struct MapQuery {
   uint at, end;               // entries of its bucket
 } MapQuery;
 
-// The next vertex within the radius, on a surface that faces about the same way; SUN_NONE after the last.
+// The next vertex within the radius, on a surface that faces about the same way and does not lie beside this one; SUN_NONE after the last.
 SUN_FN uint map_next_1(const LightMap *map, MapQuery *q) {
   for (;;) {
     while (q->at < q->end) {
       const SUN_GLOBAL uint *entry = map->entries + (size_t)q->at * SUN_MAP_ENTRY_WORDS;
       q->at++;
-      float x[3], distance2 = 0.0f, facing = 0.0f;
+      float x[3], distance2 = 0.0f, facing = 0.0f, here = 0.0f, there = 0.0f;
       SUN_UNROLL
       for (int axis = 0; axis < 3; axis++) {
         x[axis] = as_float(entry[axis]);
@@ -66,7 +66,17 @@ SUN_FN uint map_next_1(const LightMap *map, MapQuery *q) {
       uint vertex = entry[3];
       const SUN_GLOBAL uint *word = map->vertices + (size_t)vertex * map->records * 16;
       SUN_UNROLL
-      for (int axis = 0; axis < 3; axis++) facing += as_float(word[SUN_LIGHT_VERTEX_NORMAL + axis]) * q->normal[axis];
+      for (int axis = 0; axis < 3; axis++) {
+        float normal = as_float(word[SUN_LIGHT_VERTEX_NORMAL + axis]), to = x[axis] - q->place[axis];
+        facing += normal * q->normal[axis];
+        here += to * q->normal[axis];
+        there += to * normal;
+      }
+      // How far the one lies off the plane of the other, either way, or both off one between them: on a sphere the last is 0, across an edge one of the others.
+      float between = 0.5f * (here + (facing < 0.0f ? -there : there));
+      float off = fabs(here) < fabs(there) ? fabs(here) : fabs(there);
+      off = fabs(between) < off ? fabs(between) : off;
+      if (!(off < SUN_MERGE_OFF * map->radius)) continue;
       uint flags = word[SUN_LIGHT_VERTEX_FLAGS];
       // Its normal stands on the side from which it was found.
       facing = (flags & SUN_LIGHT_VERTEX_FRONT) ? facing : -facing;

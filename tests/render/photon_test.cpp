@@ -435,4 +435,28 @@ TEST(Photons, BehindWallsOfOneSide) {
   EXPECT_LT(floor.error, 0.095 * floor.value);
 }
 
+// A lamp that shines to both sides hangs a hundredth below a ceiling: light is caught between the two, and the photons that it leaves there are none of the lamp's lower side,
+// though they lie within the radius and face as it does.
+TEST(Photons, WhatHangsCloseToASurfaceIsNotIt) {
+  Scene scene;
+  Material shining = matt({0.8f, 0.8f, 0.8f});
+  shining.emission = {1, 1, 1};
+  add(scene, quad({0, 1, 0}, {2, 0, 0}, {0, 0, 2}), matt({0.8f, 0.8f, 0.8f}));
+  add(scene, quad({0, 0.99f, 0}, {0.5f, 0, 0}, {0, 0, 0.5f}), shining);
+  add(scene, quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}), matt({0.8f, 0.8f, 0.8f}));
+  add_camera(scene, {0, 0.3f, 0.8f}, {0, 0.99f, 0}, 30);
+  const Case made(std::move(scene));
+  RenderSettings s = picture(16, 16, 4);
+  RenderSettings of_vcm = s;
+  of_vcm.integrator = "vcm";
+  of_vcm.radius = 0.04f;
+  of_vcm.alpha = 1;
+  const double right = mean_of(render_seeds(made, s, 64, seeds), "beauty", {4, 4, 12, 12}, 1).value;
+  for (const RenderSettings &looking : {sppm(s, 16384, 0.04f), of_vcm}) {
+    const Mean m = mean_of(render_seeds(made, looking, 16, seeds), "beauty", {4, 4, 12, 12}, 1);
+    EXPECT_NEAR(m.value / right, 1, 0.03) << looking.integrator;
+    EXPECT_LT(m.error, 0.01 * right) << "too noisy to tell";
+  }
+}
+
 }  // namespace sunstone::test
