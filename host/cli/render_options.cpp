@@ -86,7 +86,7 @@ void add_render_options(CLI::App &command, RenderOptions &o) {
   command.add_option("--strategy", o.strategy, "bdpt: paths of S vertices from the light and T from the eye alone")->type_name("S,T")->group("Integrator");
   command.add_flag("--unweighted", o.unweighted, "bdpt: that strategy as if there were no other")->group("Integrator");
   command.add_option("--photons", o.photons, "sppm: light paths of a sample, whose photons all pixels share [as many as pixels, 1024 to 1048576]; photon: of the render [500000]")->type_name("N")->group("Integrator");
-  command.add_option("--radius", o.radius, "sppm, photon, vcm: within which light vertices count; of sppm and vcm for the first sample, as it shrinks [by the scene's size and the photons]")->type_name("METRES")->group("Integrator");
+  command.add_option("--radius", o.radius, "sppm, photon, vcm: within which light vertices count; of sppm and vcm for the first sample, as it shrinks [by the scene's size and the photons; vcm: two pixels of what is seen at most]")->type_name("METRES")->group("Integrator");
   command.add_option("--caustic-radius", o.caustic_radius, "photon: within which photons of caustics count [half of --radius]")->type_name("METRES")->group("Integrator");
   command.add_option("--alpha", o.alpha, "sppm, vcm: how much of what a sample adds is kept by the shrinking radius, above 0 to 1 [0.6667]")->type_name("A")->group("Integrator");
   command.add_option("--ambient", o.ambient, "whitted: light that is about everywhere, for matt surfaces [0,0,0]")->type_name("R,G,B")->group("Integrator");

@@ -21,6 +21,11 @@ void resolve_photons(const Plan &plan, RenderSettings &settings, kernel::Frame &
   if (settings.caustic_radius == 0) settings.caustic_radius = settings.radius / 2;
 }
 
+void bound_radius(RenderSettings &settings, double pixel) {
+  constexpr double pixels = 2;
+  settings.radius = static_cast<float>(std::clamp(pixels * pixel, 1e-6, static_cast<double>(settings.radius)));
+}
+
 LightPass::LightPass(const Device &device, const Programs &programs, const Plan &plan, const RenderSettings &settings, kernel::Frame &frame, const Buffer<kernel::Frame> &device_frame)
     : plan_(plan), settings_(settings), frame_(frame), device_frame_(device_frame), map_(device, programs.maps(), plan.photons ? 1 : SUN_LIGHT_VERTEX_RECORDS) {}
 

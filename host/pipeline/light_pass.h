@@ -15,6 +15,10 @@ constexpr int steps_in_a_pass = 4;  // of a walk over one sample alone, before t
 // Plans without a pass have none of it.
 void resolve_photons(const Plan &plan, RenderSettings &settings, kernel::Frame &frame);
 
+// A radius that was left to the program, where walks are joined too: no more than two pixels of this size, in metres. What is seen may be small in a large scene, and what few
+// light vertices fall there joins do better.
+void bound_radius(RenderSettings &settings, double pixel);
+
 class LightPass {
  public:
   // All but `device` have to outlive it. `frame` is that of the eye's walk, on the host and, for kernels, on the device.

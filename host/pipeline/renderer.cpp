@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "base/error.h"
@@ -77,6 +78,7 @@ struct Renderer::State {
   std::uint64_t render_tile(const Tile &tile, SampleRange range, std::uint64_t &begun, std::uint64_t wanted,
                             const std::function<bool(const RenderProgress &)> &progress);
   void add_tile(const Tile &tile);
+  double pixel_seen();
 };
 
 void Renderer::State::name_layers() {
@@ -153,7 +155,6 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   s.scene = upload(device, scene, filter.inverse_cdf, frame);
   resolve_photons(s.plan, s.settings, frame);
   if (s.plan.bidirectional && !s.plan.light_walk.empty()) frame.flags |= SUN_FRAME_EYE_PASS;
-  s.film.settings = film_settings(s.settings, camera, scene.camera_keys);
 
   for (const Stage stage : s.plan.walk) {
     const bool layers = s.film.layers.size() > SUN_LAYER_FIRST_OPTIONAL + frame.bounce_layers, lit = frame.emitter_count > 0;
@@ -194,9 +195,37 @@ Renderer::Renderer(const Device &device, const Programs &programs, const FlatSce
   }
   s.device_film = Buffer<std::int64_t>(
       device, s.film.layers.size() * static_cast<std::size_t>(s.tiles[0].width) * static_cast<std::size_t>(s.tiles[0].height) * SUN_FILM_CHANNELS * SUN_FILM_BINS, "film");
+  if (mapped && !s.plan.photons && settings.radius == 0) bound_radius(s.settings, s.pixel_seen());
+  s.film.settings = film_settings(s.settings, camera, scene.camera_keys);
 }
 
 Renderer::~Renderer() = default;
+
+// The size of a pixel, in metres, at the median distance of what the camera rays of sample 0 hit: infinity where they hit nothing. Hits are the same on every device, and a
+// median depends on no order.
+double Renderer::State::pixel_seen() {
+  place_tile(tiles[0]);
+  frame.sample_first = 0;
+  device_frame.upload(std::span(&frame, 1));
+  StageRunner runner(programs, scene, *pool, device_frame, device_film);
+  std::vector<float> distances;
+  for (kernel::uint first = 0; first < frame.paths_per_sample; first += pool->slots) {
+    pool->status.fill_zero();
+    counters.begin(*pool, first, std::min(first + pool->slots, frame.paths_per_sample));
+    for (const Stage stage : {Stage::gather_paths, Stage::emit, Stage::intersect}) runner.run(stage);
+    const std::vector<kernel::Hit> hits = pool->hits.download();
+    const std::vector<kernel::uint> status = pool->status.download();
+    for (std::size_t slot = 0; slot < hits.size(); slot++)
+      if ((status[slot] & SUN_STATUS_ALIVE) && hits[slot].instance != SUN_NONE) distances.push_back(hits[slot].t);
+  }
+  pool->status.fill_zero();
+  if (distances.empty()) return std::numeric_limits<double>::infinity();
+  const auto median = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::ranges::nth_element(distances, median);
+  const float *up = frame.camera.up;
+  const double half = std::sqrt(static_cast<double>(up[0]) * up[0] + static_cast<double>(up[1]) * up[1] + static_cast<double>(up[2]) * up[2]);
+  return 2 * half / frame.height * (frame.camera.kind == SUN_CAMERA_ORTHOGRAPHIC ? 1.0 : static_cast<double>(*median));
+}
 
 // One launch of `count` samples from `first` on: steps until every path has ended. Returns how many samples were done.
 std::uint64_t Renderer::State::render_launch(StageRunner &runner, std::uint64_t first, std::uint64_t count, std::uint64_t before, std::uint64_t wanted,
