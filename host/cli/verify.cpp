@@ -29,7 +29,7 @@ constexpr Expected expected[] = {{"path", "fde23fd9c9a6d6faee8566fa5c158c67"},
                                  {"distribution", "fdc18a93b42d0a165edb779d587e297a"},
                                  {"whitted", "cc0e053e0b23a1e51092dc7340a8bb8b"},
                                  {"bdpt", "35282e7b9dcb2534bfe2fbb04bb21858"},
-                                 {"sppm", "51b2238682dca39cbbf630aabe7742c3"},
+                                 {"sppm", "f257a2a346d1000de8d6782f0065bc7e"},
                                  {"photon", "29961b6c109810fc9e91c70ba4ac5eb6"},
                                  {"vcm", "a0cd32fb3b7d8bc01aa4cce560e2665b"},
                                  {"whitted", "3feeb7b0f53abe26bcf6622188050b26", true}};

@@ -10,15 +10,13 @@
 
 SUN_NAMESPACE_BEGIN
 
-// Roughness^2 below which facets are sharp. A map of caustics stays the same for all samples, so that what few photons of it leave in gloss stays, too: more is sharp there.
-// Behind the surface that looked at it nothing is but deltas, as caustics are what these alone leave.
-#define SUN_SHARP_ALPHA 0.09f
-#define SUN_SHARP_ALPHA_FIRST 0.25f
+// Roughness^2 below which facets are sharp. Where caustics have a map of their own nothing is but deltas behind the surface that looked at it, as caustics are what these alone leave.
+#define SUN_SHARP_ALPHA 0.25f
 
 SUN_FN mask sharp_facets(const SUN_GLOBAL Frame *frame, const Lobes *l, uint_n phase) {
-  real most = (real)(SUN_SHARP_ALPHA);
-  if (frame->flags & SUN_FRAME_FINAL_GATHER) most = phase == (uint_n)(SUN_PHASE_SHARP) ? (real)(SUN_SHARP_ALPHA_FIRST) : (real)(0.0f);
-  return (l->pick_facets > 0.0f) & (l->delta_reflection | l->delta_transmission | (l->alpha < most));
+  mask counts = phase == (uint_n)(SUN_PHASE_SHARP);
+  if ((frame->flags & SUN_FRAME_FINAL_GATHER) == 0) counts = counts | !counts;
+  return (l->pick_facets > 0.0f) & (l->delta_reflection | l->delta_transmission | (counts & (l->alpha < SUN_SHARP_ALPHA)));
 }
 
 // The part that looks at photons.

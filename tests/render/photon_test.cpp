@@ -459,4 +459,19 @@ TEST(Photons, WhatHangsCloseToASurfaceIsNotIt) {
   }
 }
 
+// Brushed metal, in balls no larger than the radius: photons around a place of it are those of all of its sides, so it goes on as a path.
+TEST(Photons, SmallThingsOfGlossAreNotBlurred) {
+  Scene scene;
+  add(scene, quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}), matt({0.7f, 0.5f, 0.3f}));
+  for (int i = 0; i < 4; i++) add(scene, sphere({-0.6f + 0.4f * static_cast<float>(i), 0.15f, 0}, 0.15f, 12), metal({0.9f, 0.7f, 0.5f}, 0.3f + 0.04f * static_cast<float>(i)));
+  add(scene, quad({0, 1.5f, 0}, {0.6f, 0, 0}, {0, 0, 0.6f}), lamp({4, 4, 4}));
+  add_camera(scene, {0, 0.5f, 3}, {0, 0.15f, 0}, 18);
+  const Case made(std::move(scene));
+  const RenderSettings s = picture(24, 16, 4);
+  const Window balls{4, 6, 20, 10};
+  const Mean a = mean_of(render_seeds(made, sppm(s, 4096, 0.2f), 48, seeds), "bounce.2", balls, 1), b = mean_of(render_seeds(made, s, 128, seeds), "bounce.2", balls, 1);
+  EXPECT_NEAR(a.value / b.value, 1, 0.04);
+  EXPECT_LT(std::hypot(a.error, b.error), 0.02 * b.value) << "too noisy to tell";
+}
+
 }  // namespace sunstone::test
