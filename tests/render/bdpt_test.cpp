@@ -174,12 +174,9 @@ TEST(Bdpt, WithinGlass) {
 
 // Triangles of one side: the eye looks into the room from behind its wall, the sky does not shine through it, and what stands behind the wall is lit from within.
 TEST(Bdpt, SurfacesOfOneSide) {
-  Scene scene;
+  Scene scene = room_of_one_side();
   Material wall = matt({0.7f, 0.6f, 0.5f});
   wall.double_sided = false;
-  add(scene, box({-1, 0, -1}, {1, 1.6f, 1}, true), wall);
-  add(scene, quad({0, 1.3f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), lamp({5, 6, 7}));
-  add(scene, quad({0, -0.01f, 1.5f}, {2, 0, 0}, {0, 0, -3}), matt({0.6f, 0.6f, 0.7f}));
   add(scene, quad({0, 0.5f, 1.3f}, {0.4f, 0, 0}, {0, 0.3f, 0}), wall);
   set_sky(scene, {0.2f, 0.2f, 0.3f});
   add_camera(scene, {0.5f, 1.1f, 4}, {0, 0.6f, 0}, 42);

@@ -422,12 +422,7 @@ TEST(Photons, GlossIsNotDottedByCaustics) {
 
 // The eye looks into a room from behind its wall, and light falls through that wall on the floor before it: few photons take that way, but not so few that each weighs too much.
 TEST(Photons, BehindWallsOfOneSide) {
-  Scene scene;
-  Material wall = matt({0.7f, 0.6f, 0.5f});
-  wall.double_sided = false;
-  add(scene, box({-1, 0, -1}, {1, 1.6f, 1}, true), wall);
-  add(scene, quad({0, 1.3f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), lamp({5, 6, 7}));
-  add(scene, quad({0, -0.01f, 1.5f}, {2, 0, 0}, {0, 0, -3}), matt({0.6f, 0.6f, 0.7f}));
+  Scene scene = room_of_one_side();
   add_camera(scene, {0.5f, 1.1f, 6}, {0, 0.5f, 0}, 40);
   const Case made(std::move(scene));
   const std::vector<Film> films = render_seeds(made, sppm(picture(24, 16, 4), 4096, 0.15f), 4, 2 * seeds);

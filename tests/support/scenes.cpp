@@ -251,6 +251,16 @@ TextureUse use_picture(Scene &scene, Image image, bool linear) {
   return use;
 }
 
+Scene room_of_one_side() {
+  Scene scene;
+  Material wall = matt({0.7f, 0.6f, 0.5f});
+  wall.double_sided = false;
+  add(scene, box({-1, 0, -1}, {1, 1.6f, 1}, true), wall);
+  add(scene, quad({0, 1.3f, 0}, {0.4f, 0, 0}, {0, 0, 0.4f}), lamp({5, 6, 7}));
+  add(scene, quad({0, -0.01f, 1.5f}, {2, 0, 0}, {0, 0, -3}), matt({0.6f, 0.6f, 0.7f}));
+  return scene;
+}
+
 Scene matt_room() {
   Scene scene;
   add(scene, box({-1, 0, -1}, {1, 1.6f, 1}, true), matt({0.7f, 0.6f, 0.5f}));

@@ -45,6 +45,9 @@ TextureUse use_picture(Scene &scene, Image image, bool linear = true);
 // Matt walls, so that every strategy of bidirectional methods finds every path, and a lamp that is large enough to be met by chance.
 Scene matt_room();
 
+// A room whose walls have one side, so that one looks into it from behind, and light falls out on the ground before it.
+Scene room_of_one_side();
+
 // Everything at once, small: textures, normal map, alpha of both kinds, solid, rough and thin glass, metal, instances (one mirrored), punctual lights, an
 // emissive triangle mesh with a texture, a sky map.
 Scene everything();
